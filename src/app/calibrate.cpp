@@ -123,20 +123,20 @@ void add_calibrate(CLI::App& program, int& exit_code) {
       ->type_name("DIR");
   add_side_by_side_options(*command, calibrate->options);
   command->footer(
-      "Each target is mostly the work of one key. Concrete (DEM): young, poisson, tension\n"
-      "by tensile_strength, compression by cohesion, fracture_energy; law ldpm likewise, the\n"
-      "energy by ldpm.tensile_length. Rock (FDEM): young,\n"
-      "poisson, brazilian or else tension by joint.tension, compression by joint.cohesion,\n"
-      "friction_angle; fracture_energy and slide_energy are set as joint.energy_open and\n"
-      "joint.energy_slide, and no specimen shows them. Other keys stay. A material with\n"
-      "the key use has the targets of its name; --target takes their place.\n"
+      "Each target is mostly the work of one key. Concrete (DEM): young, poisson, tension by "
+      "tensile_strength, compression by cohesion, fracture_energy; law ldpm likewise, the energy "
+      "by ldpm.tensile_length. Rock (FDEM): young, poisson, brazilian or else tension by "
+      "joint.tension, compression by joint.cohesion, friction_angle; fracture_energy and "
+      "slide_energy are set as joint.energy_open and joint.energy_slide, and no specimen shows "
+      "them. Other keys stay. A material with the key use has the targets of its name; --target "
+      "takes their place.\n"
       "\n"
-      "A step makes the specimens that show the targets ('breccia test'), then all keys\n"
-      "move by secants. It ends when all means are within 3 % (E), 5 % (strengths,\n"
-      "friction angle), 10 % (nu, fracture energy), else with exit code 9.\n"
+      "A step makes the specimens that show the targets ('breccia test'), then all keys move by "
+      "secants. It ends when all means are within 3 % (E), 5 % (strengths, friction angle), 10 % "
+      "(nu, fracture energy), else with exit code 9.\n"
       "\n"
-      "DIR/material.toml is the material with its record, calibration.md and .svg the\n"
-      "steps. Called again, the command takes what was computed from DIR/runs.");
+      "DIR/material.toml is the material with its record, calibration.md and .svg the steps. "
+      "Called again, the command takes what was computed from DIR/runs.");
   command->callback([calibrate, &exit_code] { exit_code = calibrate->execute(); });
 }
 

@@ -89,6 +89,8 @@ std::function<void(std::size_t, const laboratory::FinishedRun&)> tell_of(
     std::string line = fmt::format("{:>5} of {}  {:<12} {:>7.1f} s  {}", ++*ended, runs.size(),
                                    state, result.wall, runs[run].name);
     if (!result.message.empty()) line += ": " + result.message;
+    if (state == "failed" && result.ended_mute())
+      line += "; all it said: " + laboratory::log_beside(runs[run].folder);
     fmt::print("{}\n", harmless(line));
     std::fflush(stdout);
   };

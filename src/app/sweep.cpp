@@ -12,6 +12,7 @@
 #include "app/commands.hpp"
 #include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
+#include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "run/case.hpp"
@@ -67,7 +68,10 @@ struct SweepCommand {
       if (exit_code == 0 || exit_code == 9)
         exit_code = results[k].exit_code != 0 ? std::abs(results[k].exit_code) : exit_code;
     }
-    write(lab::SweepTable(axes, rows, measures), out, base.name);
+    const lab::SweepTable table(axes, rows, measures);
+    write(table, out, base.name);
+    if (const std::string problem = table.unknown_measure(); !problem.empty())
+      throw InputError(problem + "; the runs are kept");
     return exit_code;
   }
 

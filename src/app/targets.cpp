@@ -7,9 +7,30 @@
 
 #include "exec/error.hpp"
 #include "io/case/units.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::app {
 namespace {
+
+/// What is wrong with a number that no material has, so that a forgotten unit is told before
+/// anything is computed.
+std::string beyond_materials(const MaterialTarget& target, bool plain) {
+  struct Range {
+    double low, high;
+    const char *words, *unit;  ///< that people write
+  };
+  const Range range = target.unit == "Pa"    ? Range{1e3, 1e13, "1 kPa to 10 TPa",
+                                                  target.name == "young" ? "GPa" : "MPa"}
+                      : target.unit == "rad" ? Range{0.0, 0.5 * pi, "0 to 90 degrees", "deg"}
+                      : target.unit == "-"   ? Range{0.0, 0.5, "0 to 0.5", ""}
+                                             : Range{0.0, 1e9, "0 to 1e9 J/m2", ""};
+  if (target.value >= range.low && target.value <= range.high) return "";
+  const std::string unit = target.unit == "-" ? "" : " " + target.unit;
+  std::string problem = fmt::format("{:g}{} is outside of {}", target.value, unit, range.words);
+  if (plain && *range.unit != '\0')
+    problem += fmt::format("; did you mean '{:g} {}'?", target.value, range.unit);
+  return problem;
+}
 
 MaterialTarget target_from(const std::string& text) {
   const std::size_t equals = std::min(text.find('='), text.size());
@@ -22,9 +43,10 @@ MaterialTarget target_from(const std::string& text) {
   const char* const value = text.c_str() + equals + 1;
   char* end = nullptr;
   target.value = std::strtod(value, &end);
-  if (end != value && *end == '\0') return target;  // a plain number is in SI units, as in a case
+  const bool plain = end != value && *end == '\0';  // in SI units, as in a case
   std::string problem;
-  target.value = parse_quantity(value, target.unit, problem);
+  if (!plain) target.value = parse_quantity(value, target.unit, problem);
+  if (problem.empty()) problem = beyond_materials(target, plain);
   if (!problem.empty()) throw InputError("--target " + text + ": " + problem + "; nothing was run");
   return target;
 }

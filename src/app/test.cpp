@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "app/commands.hpp"
 #include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
 #include "exec/error.hpp"
+#include "io/case/suggestion.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "laboratory/passport.hpp"
@@ -60,7 +62,21 @@ struct TestCommand {
   }
 
   int of_concrete(const Case& read, const lab::Sample& sample) const {
-    return make(read, sample, lab::tests_of(sample.material));
+    const std::vector<lab::SpecimenTest> tests = lab::tests_of(sample.material);
+    if (sample.material.law != "ldpm" && elements < lab::fewest_between_walls)
+      refuse_walls(chosen(tests));
+    return make(read, sample, tests);
+  }
+  void refuse_walls(const std::vector<lab::SpecimenTest>& tests) const {
+    std::string between, others;
+    for (const lab::SpecimenTest& test : tests)
+      (lab::has_walls(test) ? between : others) += " " + test.name;
+    if (between.empty()) return;
+    throw InputError(fmt::format(
+        "--elements {}: so few spheres reach into the walls that press them before these move, and "
+        "their strengths mean nothing; nothing was run\n  take {} or more for{}{}",
+        elements, lab::fewest_between_walls, between,
+        others.empty() ? "" : "\n  or name others by --only:" + others));
   }
   template <class Sample>
   int make(const Case& read, Sample sample, const std::vector<lab::SpecimenTest>& tests) const {
@@ -88,14 +104,16 @@ struct TestCommand {
 
   std::vector<lab::SpecimenTest> chosen(const std::vector<lab::SpecimenTest>& all) const {
     std::vector<lab::SpecimenTest> tests;
-    std::string names;
+    std::set<std::string> names;
     for (const lab::SpecimenTest& test : all) {
-      names += " " + test.name;
+      names.insert(test.name);
       if (only.empty() ? !test.asked : std::find(only.begin(), only.end(), test.name) != only.end())
         tests.push_back(test);
     }
-    if (!only.empty() && tests.size() != only.size())
-      throw InputError("--only: the tests are" + names + "; nothing was run");
+    for (const std::string& name : only)
+      if (!names.contains(name))
+        throw InputError(fmt::format("--only {}: no such test{}; nothing was run\n  there are {}",
+                                     name, suggestion(name, names), fmt::join(names, ", ")));
     return tests;
   }
 
@@ -140,7 +158,10 @@ void add_test(CLI::App& program, int& exit_code) {
   add_repeated(command, "--only", test->only, "this test; may be repeated", "TEST");
   add_count(command, "--seeds", test->seeds, "packings of each specimen; default: 3");
   command->add_option("--first-seed", test->first_seed, "seed of the first one; default: 1")
-      ->type_name("N");
+      ->type_name("N")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? text + " is below 0" : std::string();
+      });
   command
       ->add_option("--elements", test->elements,
                    "elements of the prism, triangles of the plate; default: 1200")
@@ -151,26 +172,28 @@ void add_test(CLI::App& program, int& exit_code) {
       ->type_name("DIR");
   add_side_by_side_options(*command, test->options);
   command->footer(
-      "Tests of concrete (DEM): compression_prism, compression_cube (smooth ends), platens_prism,\n"
-      "platens_cube (rough platens), tension, tension_notched (a prism), brazilian, bending\n"
-      "(a notched beam), bending_plain, bending_thirds (plain ones), triaxial_5, _20, _50, _100,\n"
-      "_200 (pressure in MPa; _500 and _650 if --only names them), oedometer.\n"
-      "Of law ldpm: compression_prism, compression_cube,\n"
-      "platens_prism, platens_cube (rough ends), held_prism, held_cube (held ends), tension,\n"
-      "tension_notched, triaxial_5 to _200, biaxial, oedometer, hydrostatic; grains are the "
-      "mix's,\n"
-      "the prism is five of the largest wide, --elements has no use.\n"
-      "Tests of rock (FDEM): plate, plate_pressed (its sides by half the target compression, at\n"
+      "Tests of concrete (DEM): compression_prism, compression_cube (smooth ends), platens_prism, "
+      "platens_cube (rough platens), tension, tension_notched (a prism), brazilian, bending "
+      "(a notched beam), bending_plain, bending_thirds (plain ones), triaxial_5, _20, _50, _100, "
+      "_200 (pressure in MPa; _500 and _650 if --only names them), oedometer. Those with walls "
+      "(platens, triaxial, oedometer) take 600 elements or more.\n"
+      "\n"
+      "Of law ldpm: compression_prism, compression_cube, platens_prism, platens_cube (rough ends), "
+      "held_prism, held_cube (held ends), tension, tension_notched, triaxial_5 to _200, biaxial, "
+      "oedometer, hydrostatic; grains are the mix's, the prism is five of the largest wide, "
+      "--elements has no use.\n"
+      "\n"
+      "Tests of rock (FDEM): plate, plate_pressed (its sides by half the target compression, at "
       "most the target confinement), disc, tension (a plate).\n"
       "\n"
-      "Targets: young, poisson, compression, tension, brazilian, fracture_energy,\n"
-      "friction_angle (by the strength of plate_pressed), confinement, as in\n"
-      "--target 'tension=2.9 MPa'; a material with the key use has those of its name.\n"
-      "The exit code is 9 if a mean misses its target.\n"
+      "Targets: young, poisson, compression, tension, brazilian, fracture_energy, friction_angle "
+      "(by the strength of plate_pressed), confinement, as in --target 'tension=2.9 MPa'; a "
+      "material with the key use has those of its name. The exit code is 9 if a mean misses its "
+      "target.\n"
       "\n"
-      "DIR/passport.md is the page, passport.svg has the curves of all specimens,\n"
-      "curves/*.csv their points, specimens.csv their numbers, cases/ and runs/\n"
-      "what was computed. Called again, the command keeps finished specimens.");
+      "DIR/passport.md is the page, passport.svg has the curves of all specimens, curves/*.csv "
+      "their points, specimens.csv their numbers, cases/ and runs/ what was computed. Called "
+      "again, the command keeps finished specimens.");
   command->callback([test, &exit_code] { exit_code = test->execute(); });
 }
 

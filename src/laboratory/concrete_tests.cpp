@@ -266,7 +266,7 @@ Sample sample_of(const dem::Config& config, const std::string& material) {
   const auto found = std::find_if(config.materials.begin(), config.materials.end(),
                                   [&](const auto& m) { return m.name == material; });
   if (found == config.materials.end())
-    throw InputError(fmt::format("the case has no material {}; nothing was run", material));
+    throw InputError(no_such_material(material, config.materials));
   if (found->law != "concrete" && found->law != "parallel" && found->law != "ldpm")
     throw InputError(
         fmt::format("material {} has the law {}: only concrete, parallel bonds and ldpm are "
@@ -334,6 +334,11 @@ const std::vector<SpecimenTest>& specimen_tests() {
        true},
       {"oedometer", "oedometer, cube", Loading::oedometer, cube}};
   return tests;
+}
+
+bool has_walls(const SpecimenTest& test) {
+  return test.loading == Loading::platens || test.loading == Loading::triaxial ||
+         test.loading == Loading::oedometer;
 }
 
 std::vector<SpecimenTest> tests_of(const dem::MaterialConfig& material) {

@@ -3,10 +3,12 @@
 // them.
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "dem/setup/config.hpp"
+#include "io/case/suggestion.hpp"
 
 namespace breccia::laboratory {
 
@@ -19,6 +21,14 @@ struct Sample {
   int elements =
       1200;  ///< of the prism and of the disc; the others have as large ones as the prism  [-]
 };
+
+/// What is wrong with a name that no material of a case has.
+template <class Materials>
+std::string no_such_material(const std::string& name, const Materials& materials) {
+  std::set<std::string> known;
+  for (const auto& material : materials) known.insert(material.name);
+  return "the case has no material " + name + suggestion(name, known) + "; nothing was run";
+}
 
 /// The material of a case, packed and linked as the first body of it is.
 /// @throws InputError if there is no such material, or it is no concrete or rock
@@ -61,6 +71,12 @@ const std::vector<SpecimenTest>& specimen_tests();
 
 /// The tests above, or of law ldpm its own.
 std::vector<SpecimenTest> tests_of(const dem::MaterialConfig& material);
+
+/// Fewer spheres in the prism reach into walls before these move: a cube of 400 begins pressed with
+/// a third of its strength.
+inline constexpr int fewest_between_walls = 600;
+/// Whether walls load the specimen.
+bool has_walls(const SpecimenTest& test);
 
 /// Distance of the beam's supports.  [m]
 inline constexpr double beam_span = 0.3;

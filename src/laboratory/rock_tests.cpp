@@ -143,7 +143,7 @@ RockSample rock_sample_of(const fdem::Config& config, const std::string& materia
   const auto found = std::find_if(config.materials.begin(), config.materials.end(),
                                   [&](const auto& m) { return m.name == material; });
   if (found == config.materials.end())
-    throw InputError(fmt::format("the case has no material {}; nothing was run", material));
+    throw InputError(no_such_material(material, config.materials));
   if (found->joints == "none")
     throw InputError(
         fmt::format("material {} has no joints: it does not break; nothing was run", material));

@@ -99,19 +99,30 @@ bool holds_checkpoint(const std::string& folder) {
   return !fs::is_empty(folder + "/checkpoints", error) && !error;
 }
 
-/// The error that a run has told, without the word before it.
+/// Of a run that told no error.
+std::string mute_end(int exit_code) {
+  return exit_code < 0 ? fmt::format("killed by signal {}", -exit_code)
+                       : fmt::format("exit code {}", exit_code);
+}
+
+/// The error that a run has told, without the word before it, with the first line below it that
+/// stands further in: the problem that the error counts.
 std::string told_error(const std::string& log, int exit_code) {
   try {
     const std::string text = read_whole_file(log);
     const std::size_t at = text.rfind("error: ");
     if (at != std::string::npos) {
-      const std::size_t begin = at + 7;
-      return text.substr(begin, std::min(text.find('\n', begin), text.size()) - begin);
+      const auto line_from = [&](std::size_t begin) {
+        return text.substr(begin, std::min(text.find('\n', begin), text.size()) - begin);
+      };
+      const std::string error = line_from(at + 7);
+      const std::string below = line_from(std::min(at + 7 + error.size() + 1, text.size()));
+      const std::size_t first = below.find_first_not_of(' ');
+      return first == 0 || first == std::string::npos ? error : error + ": " + below.substr(first);
     }
   } catch (const Error&) {
   }
-  return exit_code < 0 ? fmt::format("killed by signal {}", -exit_code)
-                       : fmt::format("exit code {}", exit_code);
+  return mute_end(exit_code);
 }
 
 class Pool {
@@ -247,6 +258,10 @@ class Pool {
 };
 
 }  // namespace
+
+bool FinishedRun::ended_mute() const {
+  return !complete() && message == mute_end(exit_code);
+}
 
 std::string log_beside(const std::string& folder) {
   return folder + ".log";

@@ -25,6 +25,8 @@ struct FinishedRun {
 
   /// Whether its numbers count.
   bool complete() const { return exit_code == 0 || exit_code == 9; }
+  /// Whether it ended without an error of its own: all there is to know is in its log.
+  bool ended_mute() const;
 };
 
 /// Where a run of that folder leaves what it says.

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "exec/error.hpp"
+#include "io/case/suggestion.hpp"
 
 namespace breccia::laboratory {
 namespace {
@@ -86,7 +87,11 @@ std::vector<std::string> items_of(const std::string& text) {
 /// The values of "A..B:N", or nothing if the text is no range.
 std::vector<std::string> range_of(const std::string& text, const std::string& item) {
   const std::size_t dots = item.find(".."), colon = item.rfind(':');
-  if (dots == std::string::npos || colon == std::string::npos || colon < dots) return {};
+  if (dots == std::string::npos) return {};
+  if (colon == std::string::npos || colon < dots) {
+    if (numbers_in(item.substr(0, dots)).values.empty()) return {};  // dots of a path
+    refuse(text, "a range says how many values it has, as in KEY=A..B:5");
+  }
   int count = 0;
   const std::string digits = trimmed(item.substr(colon + 1));
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
@@ -146,6 +151,12 @@ std::vector<std::string> default_measures(const std::vector<SweepRow>& rows) {
   return measures;
 }
 
+/// A check may have no number.
+bool has_check(const RunResult& result, const std::string& name) {
+  return std::any_of(result.checks.begin(), result.checks.end(),
+                     [&](const CheckedNumber& check) { return check.name == name; });
+}
+
 std::string state_of(const FinishedRun& run) {
   if (run.exit_code == 0) return "done";
   if (run.exit_code == 9) return "check failed";
@@ -156,10 +167,9 @@ std::string state_of(const FinishedRun& run) {
 std::string failure_of(const SweepRow& row) {
   const std::string& message = row.run.message;
   if (message.empty()) return "was not run";
-  const std::string code = fmt::format("exit code {}", row.run.exit_code);
-  const bool told = row.run.exit_code < 0 || message == code;
-  return fmt::format("{}{}; all it said: {}", told ? "" : code + ": ", cell(message),
-                     cell(log_beside(row.folder)));
+  const std::string code =
+      row.run.ended_mute() ? "" : fmt::format("exit code {}: ", row.run.exit_code);
+  return fmt::format("{}{}; all it said: {}", code, cell(message), cell(log_beside(row.folder)));
 }
 
 }  // namespace
@@ -245,6 +255,20 @@ SweepTable::SweepTable(std::vector<SweepAxis> axes, std::vector<SweepRow> rows,
                        std::vector<std::string> measures)
     : axes_(std::move(axes)), rows_(std::move(rows)), measures_(std::move(measures)) {
   if (measures_.empty()) measures_ = default_measures(rows_);
+}
+
+std::string SweepTable::unknown_measure() const {
+  const auto row = std::find_if(rows_.begin(), rows_.end(), [](const auto& r) { return r.result; });
+  if (row == rows_.end()) return "";
+  std::set<std::string> known;
+  for (const auto& [path, number] : row->result->numbers) known.insert(path);
+  for (const std::string& measure : default_measures(rows_)) known.insert(measure);
+  for (const std::string& measure : measures_)
+    if (std::all_of(rows_.begin(), rows_.end(), [&](const SweepRow& r) {
+          return !r.result || (!r.result->number(measure) && !has_check(*r.result, measure));
+        }))
+      return fmt::format("--measure {}: no run has it{}", measure, suggestion(measure, known));
+  return "";
 }
 
 double SweepTable::value(const SweepRow& row, const std::string& measure) const {

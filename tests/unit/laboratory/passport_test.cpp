@@ -355,9 +355,49 @@ pack = { count = 100, compactness = 0.56 }
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/passport.svg"));
   EXPECT_NE(read_whole_file(scratch / "out/specimens.csv").find("\ntension,1,strength,MPa,"),
             std::string::npos);
-  EXPECT_EQ(wait_for(start_program(arguments + " --only dance", scratch / "output.txt")), 2);
-  EXPECT_NE(read_whole_file(scratch / "output.txt").find("the tests are compression_prism"),
+  const auto refused = [&](const std::string& more, const std::string& words) {
+    EXPECT_EQ(wait_for(start_program(arguments + " " + more, scratch / "output.txt")), 2) << more;
+    const std::string said = read_whole_file(scratch / "output.txt");
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  refused("--only dance", "--only dance: no such test; nothing was run\n  there are bending, ");
+  refused("--only tensoin", "; did you mean tension?");
+  refused("--only platens_cube",
+          "take 600 or more for platens_cube\n  or name others by --only: tension");
+  refused("--target compression=38", "38 Pa is outside of 1 kPa to 10 TPa; did you mean '38 MPa'?");
+  refused("--target friction_angle=55",
+          "55 rad is outside of 0 to 90 degrees; did you mean '55 deg'?");
+  refused("--target 'poisson=20'", "20 is outside of 0 to 0.5");
+  refused("--first-seed -3", "--first-seed");
+  EXPECT_EQ(
+      wait_for(start_program("test '" + scratch / "c.toml' --material d", scratch / "output.txt")),
+      2);
+  EXPECT_NE(read_whole_file(scratch / "output.txt").find("no material d; did you mean c?"),
             std::string::npos);
+}
+
+TEST(TestCommand, TellsWhatIsWrongWithASpecimen) {
+  const ScratchFolder scratch;
+  replace_file(scratch / "r.toml", R"(
+breccia = 1
+method = "fdem2d"
+[time]
+end = 1.0
+[material.r]
+use = "marble-cherokee"
+[[body]]
+name = "b"
+shape = "plate"
+material = "r"
+size = [0.1, 0.1]
+mesh_size = 0.05
+)");
+  const std::string arguments =
+      "test '" + scratch / "r.toml' --material r --only disc --seeds 1 -o '" + scratch / "out'";
+  const std::string no_gmsh = "PATH=/nowhere; export PATH;";
+  EXPECT_EQ(wait_for(start_program(arguments, scratch / "output.txt", no_gmsh)), 2);
+  const std::string said = read_whole_file(scratch / "output.txt");
+  EXPECT_NE(said.find("needs the program gmsh"), std::string::npos) << said;
 }
 
 }  // namespace passport_test

@@ -165,7 +165,35 @@ TEST_F(SweepCommand, RefusesWrongValuesBeforeAnythingRuns) {
   EXPECT_NE(output().find("radius = -1 is outside"), std::string::npos) << output();
   EXPECT_EQ(sweep("--over seed"), 2);
   EXPECT_EQ(sweep("--seeds 0"), 2);
+  EXPECT_EQ(sweep("--over body.left.radius=0.01..0.02"), 2);
+  EXPECT_NE(output().find("a range says how many values it has"), std::string::npos) << output();
   EXPECT_FALSE(fs::exists(scratch / "out"));
+}
+
+TEST_F(SweepCommand, TellsOfAMeasureThatNoRunHasAndKeepsTheRuns) {
+  EXPECT_EQ(sweep("--measure probe.rigt_v.last"), 2);
+  EXPECT_NE(output().find("--measure probe.rigt_v.last: no run has it; did you mean "
+                          "probe.right_v.last?"),
+            std::string::npos)
+      << output();
+  EXPECT_EQ(sweep("--measure probe.right_v.peak --measure rebound"), 0);
+  EXPECT_EQ(count(output(), "kept"), 1U) << output();
+}
+
+TEST_F(SweepCommand, NamesTheLogOfARunThatEndsWithoutAnError) {
+  replace_file(scratch / "mute.sh", "#!/bin/sh\necho no ranks for root\nexit 1\n");
+  fs::permissions(scratch / "mute.sh", fs::perms::owner_all);
+  const int exit_code = wait_for(start_program(
+      "sweep '" + scratch / "balls.toml' --ranks 2 -o '" + scratch / "out'", scratch / "output.txt",
+      "BRECCIA_MPIRUN='" + scratch / "mute.sh'; export BRECCIA_MPIRUN;"));
+  if (output().find("has no MPI") != std::string::npos) GTEST_SKIP() << output();
+  EXPECT_EQ(exit_code, 1);
+  const std::string words = "seed=1: exit code 1; all it said: ";
+  const std::size_t at = output().find(words);
+  ASSERT_NE(at, std::string::npos) << output();
+  const std::size_t begin = at + words.size();
+  EXPECT_EQ(read_whole_file(output().substr(begin, output().find('\n', begin) - begin)),
+            "no ranks for root\n");
 }
 
 TEST(GpusForRuns, AreDealtOneEachOrAsManyAsARunHasRanks) {
@@ -206,16 +234,25 @@ TEST(GpusForRuns, EachRunTakesTheOneWithTheFewestRuns) {
   EXPECT_NE(both.find("2,3 run"), std::string::npos) << both;
 }
 
-TEST_F(SweepCommand, ExplainsItselfWithinEightyColumns) {
-  EXPECT_EQ(sweep("--help"), 0);
-  std::string line;
-  for (const char c : output())
-    if (c == '\n') {
-      EXPECT_LE(line.size(), 80U) << line;
-      line.clear();
-    } else {
-      line += c;
+TEST_F(SweepCommand, CommandsExplainThemselvesInLinesThatFillEightyColumns) {
+  for (const std::string command : {"sweep", "test", "calibrate"}) {
+    EXPECT_EQ(wait_for(start_program(command + " --help", scratch / "output.txt")), 0);
+    std::vector<std::string> lines{""};
+    for (const char c : output())
+      if (c == '\n')
+        lines.emplace_back();
+      else
+        lines.back() += c;
+    bool options = true;  // then paragraphs
+    for (std::size_t k = 0; k + 1 < lines.size(); ++k) {
+      EXPECT_LE(lines[k].size(), 80U) << lines[k];
+      if (lines[k].find("--allow-scripts") != std::string::npos) options = false;
+      if (options || lines[k].empty() || lines[k].starts_with(' ') || lines[k + 1].empty())
+        continue;
+      const std::size_t next = std::min(lines[k + 1].find(' '), lines[k + 1].size());
+      EXPECT_GT(lines[k].size() + 1 + next, 76U) << command << ": " << lines[k];
     }
+  }
 }
 
 }  // namespace sweep_command_test
