@@ -6,18 +6,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "app/film.hpp"
 #include "exec/error.hpp"
 #include "io/digest.hpp"
+#include "io/json.hpp"
 #include "report/packed_bytes.hpp"
 
 namespace breccia::app {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::string_view mark = "breccia-film:";
 constexpr std::size_t most_parts = 1000;      // of a picture
@@ -87,22 +85,24 @@ std::string digest_of_pixels(const Image& image) {
 }
 
 std::string text_of(const FilmRecipe& recipe) {
-  Json json{{"runs", Json::array()}, {"columns", recipe.columns}, {"pixels", recipe.pixels}};
+  Json json{{"columns", recipe.columns},
+            {"pictures", Json::array()},
+            {"pixels", recipe.pixels},
+            {"runs", Json::array()}};
   for (const std::vector<PngNote>& notes : recipe.runs) json["runs"].push_back(json_of(notes));
-  json["pictures"] = Json::array();
   for (const std::vector<RecipePart>& picture : recipe.pictures) {
     Json parts = Json::array();
     for (const RecipePart& part : picture)
-      parts.push_back({{"run", part.run}, {"notes", json_of(part.notes)}});
+      parts.push_back({{"notes", json_of(part.notes)}, {"run", part.run}});
     json["pictures"].push_back(std::move(parts));
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 FilmRecipe recipe_of_text(const std::string& text, const std::string& path) {
   const auto damaged = [&] { return InputError(path + ": the recipe in it is damaged"); };
   try {
-    const Json json = Json::parse(text);
+    const Json json = read_json(text);
     FilmRecipe recipe;
     recipe.columns = json.at("columns").get<int>();
     recipe.pixels = json.at("pixels").get<std::vector<std::string>>();

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "io/case/key_pages.hpp"
 #include "io/checkpoint.hpp"
 #include "io/harmless.hpp"
+#include "io/json.hpp"
 #include "io/round_numbers.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
@@ -52,25 +52,24 @@ void describe_state(const std::string& path) {
 /// A summary as text for people.
 class Told {
  public:
-  explicit Told(const std::string& path)
-      : json_(nlohmann::json::parse(read_whole_file(path), nullptr, false)) {
+  explicit Told(const std::string& path) : json_(read_json(read_whole_file(path))) {
     if (!json_.is_object())
       throw InputError(path + ": this is no summary of a run: it is damaged, or not JSON");
   }
 
   std::string text(const char* path) const {
-    const nlohmann::json* const found = find(path);
+    const Json* const found = find(path);
     return found != nullptr && found->is_string() ? found->get<std::string>() : "";
   }
   double number(const char* path) const {
-    const nlohmann::json* const found = find(path);
+    const Json* const found = find(path);
     return found != nullptr && found->is_number() ? found->get<double>() : 0.0;
   }
   /// "1 of 2 checks passed"; empty without checks.
   std::string checks() const {
-    const nlohmann::json* const all = find("/checks");
+    const Json* const all = find("/checks");
     if (all == nullptr || !all->is_array() || all->empty()) return "";
-    const auto passed = std::count_if(all->begin(), all->end(), [](const nlohmann::json& check) {
+    const auto passed = std::count_if(all->begin(), all->end(), [](const Json& check) {
       return check.is_object() && check.contains("pass") && check["pass"] == true;
     });
     return fmt::format("{} of {} passed", passed, all->size());
@@ -85,11 +84,11 @@ class Told {
   }
 
  private:
-  const nlohmann::json* find(const char* path) const {
-    const nlohmann::json::json_pointer at(path);
+  const Json* find(const char* path) const {
+    const Json::json_pointer at(path);
     return json_.contains(at) ? &json_.at(at) : nullptr;
   }
-  nlohmann::json json_;
+  Json json_;
 };
 
 void tell(const char* head, const std::string& text) {

@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "exec/error.hpp"
 #include "exec/no_memory.hpp"
 #include "io/case/toml.hpp"
+#include "io/json.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia::app {
 namespace {
-
-using Json = nlohmann::json;
 
 /// The text of a file of the folder; empty if it cannot be read.
 std::string text_of(const std::string& path) {
@@ -34,7 +32,7 @@ struct RunFacts {
   explicit RunFacts(const std::string& folder) {
     try {
       const NeedsMemory scope;
-      const Json json = Json::parse(text_of(folder + "/summary.json"));
+      const Json json = read_json(text_of(folder + "/summary.json"));
       name = json.at("case").at("name").get<std::string>();
       seed = json.at("case").at("seed").get<std::int64_t>();
       version = json.at("breccia").at("version").get<std::string>();
@@ -74,7 +72,7 @@ std::optional<PictureMoment> moment_of_frame(const std::string& folder, int numb
   const std::string begin = fmt::format("frame {} at ", number);
   for (std::string line; std::getline(lines, line);) {
     const NeedsMemory scope;
-    const Json json = Json::parse(line, nullptr, false);
+    const Json json = read_json(line);
     try {
       if (json.is_object() && json.at("stage") == "frame" &&
           json.at("message").get<std::string>().starts_with(begin))

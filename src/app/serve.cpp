@@ -8,10 +8,10 @@
 #include <chrono>
 #include <filesystem>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "exec/error.hpp"
+#include "io/json.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 #include "report/page.hpp"
@@ -57,8 +57,8 @@ struct ReportServer::Own {
   std::mutex building;      ///< one page at a time
   std::string page, shown;  ///< the last page, and the state that it is of
 
-  nlohmann::json state() const {
-    const auto summary = nlohmann::json::parse(read_whole_file(folder + "/summary.json"));
+  Json state() const {
+    const auto summary = read_json(read_whole_file(folder + "/summary.json"));
     return {{"status", summary.at("status")},
             {"step", summary.at("steps")},
             {"time", summary.at("time")},
@@ -67,7 +67,7 @@ struct ReportServer::Own {
   /// The page of this state; kept until there is another.
   std::string page_now() {
     const std::lock_guard lock(building);
-    const std::string now = state().dump();
+    const std::string now = json_text(state());
     if (now == shown) return page;
     page = report::live_page_of(report::read_record(folder), now).html;
     shown = now;
@@ -111,7 +111,8 @@ ReportServer::ReportServer(std::string folder, int port) : own_(std::make_unique
                               {"X-Content-Type-Options", "nosniff"},
                               {"X-Frame-Options", "DENY"}});
   own_->answer("/", "text/html; charset=utf-8", [own = own_.get()] { return own->page_now(); });
-  own_->answer("/state", "application/json", [own = own_.get()] { return own->state().dump(); });
+  own_->answer("/state", "application/json",
+               [own = own_.get()] { return json_text(own->state()); });
   const bool bound = port == 0 ? (port = server.bind_to_any_port(loopback)) > 0
                                : server.bind_to_port(loopback, port);
   if (!bound)

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
@@ -18,6 +17,7 @@
 #include "app/serve.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
+#include "io/json.hpp"
 #include "io/whole_file.hpp"
 #include "run/case.hpp"
 #include "run/results/result_folder.hpp"
@@ -93,7 +93,7 @@ class WatchCommand {
     const std::string path = folder + "/summary.json";
     if (!std::filesystem::exists(path))
       throw IoError(path + ": no such file: there is no run, or it still builds its model");
-    const auto summary = nlohmann::json::parse(read_whole_file(path), nullptr, false);
+    const auto summary = read_json(read_whole_file(path));
     if (!summary.is_object() || !summary.contains("status"))
       throw InputError(path + ": is no summary of a run");
     Look seen{{folder, "", "", "", end_time, {}, {}}, 0, ""};
@@ -104,14 +104,14 @@ class WatchCommand {
       run.method = summary.at("method");
       seen.exit_code = summary.at("exit_code");
       seen.message = summary.at("message");
-      const nlohmann::json fracture = summary.value("fracture", nlohmann::json::object());
+      const Json fracture = summary.value("fracture", Json::object());
       for (const char* name : {"broken_links", "broken_joints"})
         if (fracture.contains(name)) run.broken = fracture[name];
       if (run.status == "running" && !locked) {
         run.status = "lost";
         seen.message = "nothing runs in this folder any more; go on with: breccia resume " + folder;
       }
-    } catch (const nlohmann::json::exception&) {
+    } catch (const Json::exception&) {
       throw InputError(path + ": is no summary of a run");
     }
     if (std::filesystem::exists(folder + "/history.csv"))

@@ -1,16 +1,14 @@
 #include "laboratory/run_result.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
 #include "exec/no_memory.hpp"
+#include "io/json.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia::laboratory {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 void flatten(const Json& json, const std::string& path, std::map<std::string, double>& numbers) {
   if (json.is_object())
@@ -56,7 +54,7 @@ std::optional<RunResult> read_result(const std::string& folder) {
   const NeedsMemory scope;
   Json json;
   try {
-    json = Json::parse(read_whole_file(folder + "/summary.json"), nullptr, false);
+    json = read_json(read_whole_file(folder + "/summary.json"));
   } catch (const IoError&) {
     return std::nullopt;
   }

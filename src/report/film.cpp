@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <unordered_map>
 
+#include "io/json.hpp"
 #include "report/packed_bytes.hpp"
 #include "report/thinning.hpp"
 
 namespace breccia::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Numbers = std::vector<std::uint32_t>;
 
 /// How positions become whole numbers.
@@ -157,7 +156,7 @@ class Cutter {
       frames.push_back(std::move(frame));
       first_ = false;
     }
-    film.json = described(std::move(frames)).dump(-1, ' ', false, Json::error_handler_t::replace);
+    film.json = json_text(described(std::move(frames)));
     film.notes = selection_.notes(survey_);
     if (survey_.contacts > most_contacts())
       film.notes.push_back(

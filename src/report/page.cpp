@@ -6,8 +6,8 @@
 #include <array>
 #include <bit>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "io/json.hpp"
 #include "report/breakage.hpp"
 #include "report/bundle.hpp"
 #include "report/film.hpp"
@@ -16,8 +16,6 @@
 
 namespace breccia::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_rows = 4000;
 
@@ -35,7 +33,7 @@ std::string script_safe(std::string text) {
 }
 
 std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 /// A vector; what has no bound becomes null.

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
 #include "exec/no_memory.hpp"
+#include "io/json.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 
@@ -16,7 +16,6 @@ namespace breccia::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 void flatten(const Json& json, const std::string& path, Record& record) {
   if (json.is_object()) {
@@ -31,10 +30,10 @@ void flatten(const Json& json, const std::string& path, Record& record) {
 
 void read_summary(const std::string& path, Record& record) {
   const NeedsMemory scope;
-  const Json json = Json::parse(read_whole_file(path), nullptr, false);
+  const Json json = read_json(read_whole_file(path));
   if (!json.is_object())
     throw InputError(path + ": this is no summary of a run: it is damaged, or not JSON");
-  record.summary = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  record.summary = json_text(json);
   flatten(json, "", record);
 }
 
@@ -47,7 +46,7 @@ std::vector<std::string> warnings_of(const std::string& path) {
   const std::string log = read_whole_file(path);
   for (std::size_t begin = 0; begin < log.size();) {
     const std::size_t end = std::min(log.find('\n', begin), log.size());
-    const Json line = Json::parse(log.substr(begin, end - begin), nullptr, false);
+    const Json line = read_json(log.substr(begin, end - begin));
     begin = end + 1;
     if (!line.is_object()) continue;
     const auto word = [&](const char* key) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
+#include "io/json.hpp"
 #include "math/constants.hpp"
 
 namespace breccia {
@@ -133,8 +133,8 @@ std::string section(const std::string& title, const std::vector<KeyInfo>& keys) 
   return text;
 }
 
-nlohmann::ordered_json as_json(const KeyInfo& key, const std::vector<std::string>& methods) {
-  nlohmann::ordered_json json;
+Json as_json(const KeyInfo& key, const std::vector<std::string>& methods) {
+  Json json;
   json["path"] = key.path;
   json["methods"] = methods;
   json["table"] = table_heading(key);
@@ -286,10 +286,10 @@ std::string keys_as_markdown(const KeyList& keys) {
 }
 
 std::string keys_as_json(const KeyList& keys) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  Json all = Json::array();
   for (const KeyList::Section& section : keys.sections)
     for (const KeyInfo& key : section.keys) all.push_back(as_json(key, section.methods));
-  return all.dump(1) + "\n";
+  return json_text(all, 1) + "\n";
 }
 
 }  // namespace breccia

@@ -1,14 +1,12 @@
 // JSON Schema of case files.
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "io/case/key_pages.hpp"
+#include "io/json.hpp"
 
 namespace breccia {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 void add_limits(Json& json, const Range& limits) {
   const bool open_low = limits.open == Open::low || limits.open == Open::both;
@@ -65,7 +63,7 @@ Json of_key(const KeyInfo& key) {
   json["description"] =
       (key.unit.empty() || key.unit == "-" ? "" : "[" + key.unit + "] ") + key.meaning;
   if (key.default_text != "(required)")
-    if (const Json usual = Json::parse(key.default_text, nullptr, false); !usual.is_discarded())
+    if (const Json usual = read_json(key.default_text); !usual.is_discarded())
       json["default"] = usual;
   return json;
 }
@@ -122,7 +120,7 @@ std::string key_schema(const std::vector<MethodKeys>& methods) {
   const Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
                     {"title", "A case of Breccia"},
                     {"oneOf", options}};
-  return schema.dump(1) + "\n";
+  return json_text(schema, 1) + "\n";
 }
 
 }  // namespace breccia

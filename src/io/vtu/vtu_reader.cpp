@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
+#include "io/json.hpp"
 #include "io/vtu/paraview.hpp"
 #include "io/vtu/tensors.hpp"
 #include "io/vtu/vtkhdf.hpp"
@@ -310,11 +310,11 @@ std::vector<Entry> entries_of_pvd(const std::string& path) {
 }
 
 std::vector<Entry> entries_of_series(const std::string& path) {
-  const nlohmann::json json = nlohmann::json::parse(read_whole_file(path), nullptr, false);
+  const Json json = read_json(read_whole_file(path));
   const auto fail = [&]() -> IoError { return IoError(path + ": cannot read: it is no series"); };
   if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) throw fail();
   std::vector<Entry> entries;
-  for (const nlohmann::json& file : json["files"]) {
+  for (const Json& file : json["files"]) {
     const bool good = file.is_object() && file.contains("name") && file["name"].is_string() &&
                       file.contains("time") && file["time"].is_number();
     if (!good) throw fail();

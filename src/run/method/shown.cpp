@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "exec/error.hpp"
 #include "exec/no_memory.hpp"
 #include "io/case/suggestion.hpp"
+#include "io/json.hpp"
 #include "io/picture/color_map.hpp"
 #include "io/picture/picture.hpp"
 #include "run/method/coupled_method.hpp"
@@ -27,8 +27,7 @@ struct Shown {
   Frame frame;
 };
 
-void add_numbers(const nlohmann::json& json, const std::string& path,
-                 std::set<std::string>& paths) {
+void add_numbers(const Json& json, const std::string& path, std::set<std::string>& paths) {
   for (const auto& [key, value] : json.items()) {
     const std::string below = path.empty() ? key : path + "." + key;
     if (value.is_object()) add_numbers(value, below, paths);
@@ -42,7 +41,7 @@ Shown shown_by(Method& specimen) {
   summary.energy = specimen.energy();
   Shown shown;
   const NeedsMemory scope;
-  add_numbers(nlohmann::json::parse(to_json(summary)), "", shown.numbers);
+  add_numbers(read_json(to_json(summary)), "", shown.numbers);
   for (const char* const part : {"", "spheres.", "tetrahedra."})
     if (const std::string heard = part + std::string("emission.");
         shown.numbers.contains(heard + "events"))

@@ -3,11 +3,11 @@
 #include <fmt/chrono.h>
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "exec/no_memory.hpp"
 #include "io/emphasis.hpp"
 #include "io/fold.hpp"
+#include "io/json.hpp"
 
 namespace breccia {
 namespace {
@@ -39,16 +39,16 @@ void Log::write(Level level, const std::string& stage, std::int64_t step,
                 const std::string& message,
                 const std::optional<std::pair<std::int64_t, double>>& frame) {
   const NeedsMemory scope;
-  nlohmann::ordered_json line{{"time", time_stamp()},
-                              {"level", word(level)},
-                              {"stage", stage},
-                              {"step", step},
-                              {"message", message}};
+  Json line{{"time", time_stamp()},
+            {"level", word(level)},
+            {"stage", stage},
+            {"step", step},
+            {"message", message}};
   if (frame) {
     line["frame"] = frame->first;
     line["time_s"] = frame->second;
   }
-  file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  file_.append(json_text(line));
   if (echo_ != nullptr) std::fputs(fmt::format("  {}: {}\n", stage, message).c_str(), echo_);
 }
 
@@ -62,7 +62,7 @@ void Log::warn(const std::string& stage, std::int64_t step, const std::string& m
 void Log::cut_to(const std::string& path, std::int64_t step) {
   keep_lines(path, [step](std::string_view line) {
     const NeedsMemory scope;
-    const auto parsed = nlohmann::json::parse(line, nullptr, false);
+    const auto parsed = read_json(line);
     return parsed.is_object() && parsed.value("step", std::int64_t{0}) <= step;
   });
 }

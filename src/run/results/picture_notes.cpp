@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
 #include "exec/no_memory.hpp"
+#include "io/json.hpp"
 #include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const Vec3& v) {
   return Json::array({v.x, v.y, v.z});
@@ -112,7 +110,7 @@ std::vector<PngNote> notes_of_picture(const PictureMoment& moment, const RenderO
   json["options"] = json_of(options);
   std::vector<PngNote> notes;
   if (moment.hash) notes.push_back({"State hash", fmt::format("{:016x}", *moment.hash)});
-  notes.push_back({"Picture", json.dump(-1, ' ', false, Json::error_handler_t::replace)});
+  notes.push_back({"Picture", json_text(json)});
   return notes;
 }
 
@@ -132,7 +130,7 @@ PictureRecipe recipe_of(const std::vector<PngNote>& notes, const std::string& pa
                      "picture names its case but cannot be drawn again");
   try {
     const NeedsMemory scope;
-    const Json json = Json::parse(picture);
+    const Json json = read_json(picture);
     json.at("step").get_to(recipe.moment.step);
     json.at("time").get_to(recipe.moment.time);
     if (json.contains("frame")) recipe.moment.frame = json.at("frame").get<int>();

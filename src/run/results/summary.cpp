@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "exec/no_memory.hpp"
+#include "io/json.hpp"
 
 namespace breccia {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A count as an integer, any other number as it is.
 Json number(double value) {
@@ -111,7 +109,7 @@ Json json_of(const Summary& s) {
 
 std::string to_json(const Summary& summary) {
   const NeedsMemory scope;
-  return json_of(summary).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json_of(summary), 2) + "\n";
 }
 
 std::optional<double> number_at(const Summary& summary, const std::string& path) {
