@@ -6,10 +6,14 @@
 //
 //   pairs(w, by)             joints and couples; at least one launch
 //   with_sums(w, visit)      visit(kernel) with the kernel of the sums of forces
+//   blocks_of_sums           blocks of it that must fit a multiprocessor at once, where many
+//                            elements have a launch of it without the stable step; 0: never
 //   bundles(w)               the kernel of corners that move as one, and `lanes`, its threads for
 //                            each vertex
 //
 // by(kernel) wraps a kernel for a launch.
+
+#include <type_traits>
 
 #include "core/device_run.hpp"
 #include "fdem_shared/exposed.hpp"
@@ -127,6 +131,12 @@ struct NoteStable {
   }
 };
 
+/// From so many elements on, sums of forces are launched without the stable step, which needs more
+/// registers (bench/notes/gpu.md, Tetrahedra): a launch more. Tests in Space::shadow see both ways.
+inline Index fewest_summed_apart(Space space) {
+  return space == Space::shadow ? 200 : 100'000;
+}
+
 /// A kernel of which so many blocks fit a multiprocessor at once: a bound on its registers.
 template <class Kernel, int blocks>
 struct Bounded : Kernel {
@@ -217,6 +227,13 @@ class ClockedRun : public ClockLed {
     const NoteStable<decltype(stable_step(w))> stable{
         stable_step(w), elements, threads, w.given->time.evaluate_every, {clocks_.now}};
     Launches::with_sums(w, [&](const auto& kernel) {
+      using Kernel = std::remove_cvref_t<decltype(kernel)>;
+      if constexpr (Launches::blocks_of_sums > 0)
+        if (elements >= fewest_summed_apart(w.exec.space)) {
+          const Bounded<Kernel, Launches::blocks_of_sums> sums{kernel};
+          for_each_part(w.exec, part(elements, timed_(sums), Parts<>{}));
+          return for_each_part(w.exec, part(threads, timed_(stable), Parts<>{}));
+        }
       for_each_part(w.exec,
                     part(threads, timed_(stable), part(elements, timed_(kernel), Parts<>{})));
     });

@@ -64,6 +64,7 @@ void launch_pairs(World& w, const By& by) {
 
 struct Launches {
   static constexpr Index lanes = BundlesWide::width;
+  static constexpr int blocks_of_sums = 0;
 
   template <class By>
   static void pairs(World& w, const By& by) {

@@ -134,11 +134,11 @@ struct ElementForces {
     const bool on_a = side_of(entry) == 0;
     const int first = turn[joint];
     for (int i = 0; i < 3; ++i) {
-      const int corner = corner_of_face(k, on_a ? (first + 3 - i) % 3 : i);
+      Vec3& here = sum.at[corner_of_face(k, i)];  // known when it is compiled: `sum` in registers
       if (on_a)
-        sum.at[corner] += f.at[i];
+        here += f.at[(first + 3 - i) % 3];
       else
-        sum.at[corner] -= f.at[i];
+        here -= f.at[i];
     }
   }
 };

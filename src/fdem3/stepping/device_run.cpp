@@ -14,6 +14,7 @@
 namespace breccia::fdem3 {
 namespace {
 
+using fdem_shared::Bounded;
 using fdem_shared::BusyInTurn;
 using fdem_shared::emptying;
 using fdem_shared::ListBusy;
@@ -25,12 +26,14 @@ constexpr Index most_threads = 132 * 512;
 
 struct Launches {
   static constexpr Index lanes = 1;
+  static constexpr int blocks_of_sums = 4;
 
   template <class By>
   static void pairs(World& w, const By& by) {
     if (w.joints.size() + w.couples.size() == 0)  // elements read corners ahead, which move
       return for_each(w.exec, 1, by(Fence{}));
-    for_each_part(w.exec, part(w.joints.size(), by(joint_kernel(w)), Parts<>{}));
+    for_each_part(w.exec,
+                  part(w.joints.size(), by(Bounded<JointForces, 4>{joint_kernel(w)}), Parts<>{}));
     const Index couples = w.couples.size();
     if (couples == 0) return;
     const CoupleForces all = couple_kernel(w);
