@@ -12,8 +12,8 @@
 namespace breccia::app {
 namespace {
 
-/// What is wrong with a number that no material has, so that a forgotten unit is told before
-/// anything is computed.
+/// The problem of a number that no material has, so that a forgotten unit is told before anything
+/// is computed; empty: none.
 std::string beyond_materials(const MaterialTarget& target, bool plain) {
   struct Range {
     double low, high;

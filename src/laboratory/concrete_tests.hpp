@@ -22,7 +22,7 @@ struct Sample {
       1200;  ///< of the prism and of the disc; the others have as large ones as the prism  [-]
 };
 
-/// What is wrong with a name that no material of a case has.
+/// The problem of a name that no material of a case has.
 template <class Materials>
 std::string no_such_material(const std::string& name, const Materials& materials) {
   std::set<std::string> known;

@@ -73,7 +73,7 @@ class SweepTable {
   std::vector<LinePlot> plots() const;
 
   const std::vector<std::string>& measures() const { return measures_; }
-  /// What is wrong with a measure that no run has, though there are results; empty: nothing.
+  /// The problem of a measure that no run has, though there are results; empty: none.
   std::string unknown_measure() const;
   /// Over the seeds of each combination of the axes' values.
   struct Group {

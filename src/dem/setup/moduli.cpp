@@ -88,7 +88,7 @@ void stiffen_groups(LinkSet<Law>& set, const Config& before, const Config& after
   }
 }
 
-/// What friction and rolling of a contact bear grows with the tangential stiffness of its pair.
+/// Tangential stiffness of a pair, with which friction and rolling of its contacts grow.
 double tangential(const ContactConfig& law, const ContactPair& pair) {
   return law.law == "hertz" ? pair.shear : pair.shear * pair.normal;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What the keys of a set of joints are checked for, in the plane and in space.
+// Problems of the keys of a set of joints, in the plane and in space.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
