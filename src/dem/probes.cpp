@@ -187,10 +187,12 @@ Readings read_stress(const World& w, const ProbeConfig& p) {
       w.exec, w.domain, w.contacts.size(), ExactSum(),
       ActionStress{branch, state, pairs.a.view(), pairs.b.view(), w.contact_actions.view(), 0},
       Sum{}, ListedElement<>{pairs.a.view()}));
+  Buffer<Wall> walls(w.exec.space);
+  copy_to(walls, w.walls);
   const auto& at_walls = w.wall_contacts.pairs;
   r.sum.add(fold_owned(
       w.exec, w.domain, w.wall_contacts.size(), ExactSum(),
-      WallStress{branch, state, walls_view(w), at_walls.a.view(), at_walls.b.view(),
+      WallStress{branch, state, std::as_const(walls).view(), at_walls.a.view(), at_walls.b.view(),
                  w.wall_contacts.history.on_wall.view(), w.wall_contacts.history.place.view()},
       Sum{}, ListedElement<>{at_walls.a.view()}));
   if (is_first(w)) r.weight = ExactSum(branch.box.volume());

@@ -14,9 +14,13 @@ namespace {
 /// Sends everything to the ranks that need it: elements and what ties them together.
 class Migration {
  public:
-  /// @param owner  rank that each local element will belong to
-  Migration(World& w, const std::vector<int>& owner)
-      : w_(w), elements_(w.domain.ranks->size()), shared_items_(w.domain, owner, elements_) {}
+  /// @param owner    rank that each local element will belong to
+  /// @param actions  of contacts, on the host, that go with them; null: none
+  Migration(World& w, const std::vector<int>& owner, Buffer<PairForce>* actions)
+      : w_(w),
+        actions_(actions),
+        elements_(w.domain.ranks->size()),
+        shared_items_(w.domain, owner, elements_) {}
 
   /// Besides the owner, the ranks whose elements may touch one get a copy.
   void add_copies(const std::vector<Sphere>& around) {
@@ -50,7 +54,12 @@ class Migration {
       else
         redistribute(all, together(set.arrays(), number, actions), links[kind], set.numbers);
     });
-    redistribute(all, w_.contacts, contacts, w_.contacts.pairs.key);
+    if (actions_ != nullptr) {
+      auto actions = one_field(*actions_);
+      redistribute(all, together(w_.contacts, actions), contacts, w_.contacts.pairs.key);
+    } else {
+      redistribute(all, w_.contacts, contacts, w_.contacts.pairs.key);
+    }
     redistribute(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
     join_actions(on_links);
     Places places(w_.elements.id);
@@ -80,6 +89,7 @@ class Migration {
   }
 
   World& w_;
+  Buffer<PairForce>* actions_;
   SendLists elements_;
   SharedItems shared_items_;
 };
@@ -118,8 +128,14 @@ struct HasLeft {
 
 class Spheres final : public Shareable {
  public:
-  /// @param space  where the elements go when they have settled in
-  Spheres(World& w, Space space) : w_(w), space_(space) {}
+  /// @param space          where the elements go when they have settled in
+  /// @param between_steps  probes may read what contacts do before the next step finds it anew
+  Spheres(World& w, Space space, bool between_steps)
+      : w_(w), space_(space), between_steps_(between_steps) {
+    if (!between_steps) return;
+    copy_to(actions_, w.contact_actions);
+    actions_.resize(w.contacts.size());
+  }
 
   Space space() const override { return space_; }
   void come_to_host() override { move_to(w_, Space::host); }
@@ -166,7 +182,7 @@ class Spheres final : public Shareable {
   }
   double largest_margin() const override { return w_.given->largest_margin; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
-    Migration migration(w_, owner);
+    Migration migration(w_, owner, between_steps_ ? &actions_ : nullptr);
     migration.add_copies(around);
     migration.go();
   }
@@ -177,6 +193,7 @@ class Spheres final : public Shareable {
     move_to(w_, space_);
     set_linked_pairs(w_);
     derive(w_);
+    if (between_steps_) copy_to(w_.contact_actions, actions_);
   }
 
  private:
@@ -186,7 +203,9 @@ class Spheres final : public Shareable {
 
   World& w_;
   Space space_;
+  bool between_steps_;
   Buffer<ElementState> seen_;  ///< on the host, while elements are elsewhere
+  Buffer<PairForce> actions_;  ///< of contacts, on the host; between steps only
 };
 
 /// Numbers the links of a whole model.
@@ -227,7 +246,7 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
   take_from_first(ranks, part.travel.drift);
   for (ServoState& servo : part.servos) take_from_first(ranks, servo);
   part.ledger = {};  // what this rank books from here on
-  Spheres spheres(part, space);
+  Spheres spheres(part, space, true);
   begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.given->mean_radius, 3);
   part.domain.drifted_until = part.time;
   share_anew(part.domain, spheres, true);
@@ -237,13 +256,13 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
 
 void migrate(World& w) {
   if (w.domain.single_rank()) return;
-  Spheres spheres(w, w.exec.space);
+  Spheres spheres(w, w.exec.space, false);
   breccia::migrate(w, spheres);
 }
 
 void rebalance(World& w) {
   if (!is_uneven(w.domain)) return;
-  Spheres spheres(w, w.exec.space);
+  Spheres spheres(w, w.exec.space, true);
   breccia::rebalance(w, w.travel.drift.velocity, spheres);
   select_active_ghosts(w);
 }
@@ -261,7 +280,8 @@ void collect(World& part, World& whole) {
   copy_to(copy.bar_actions, part.bar_actions);
   copy.domain.ranks = part.domain.ranks;
   copy.domain.owned = part.domain.owned;
-  Migration(copy, std::vector<int>(static_cast<std::size_t>(part.elements.size()), 0)).go();
+  Migration(copy, std::vector<int>(static_cast<std::size_t>(part.elements.size()), 0), nullptr)
+      .go();
 
   const std::vector<Ledger> booked = from_each(*part.domain.ranks, part.ledger);
   part.ledger = {};

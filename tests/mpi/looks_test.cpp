@@ -120,6 +120,17 @@ TEST(Looks, find_the_same_where_arrays_lie_in_another_space) {
   }
 }
 
+// Walls press from the start, so the first look, before any step, finds contacts with them.
+TEST(Looks, at_spheres_between_walls_find_the_same) {
+  const Slab array = spheres_between_walls();
+  const Seen expected = seen(1, array, 200, 20);
+  EXPECT_EQ(seen(1, array, 200, 20, Space::shadow), expected);
+  for (const int count : {2, 3, 8}) {
+    EXPECT_EQ(seen(count, array, 200, 20), expected) << count << " ranks";
+    EXPECT_EQ(seen(count, array, 200, 20, Space::shadow), expected) << count << " devices";
+  }
+}
+
 /// Words of verify() after each of some steps.
 template <class AScene>
 std::vector<std::string> told(int count, const AScene& scene, int steps) {

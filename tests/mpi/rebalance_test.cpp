@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "fdem/ranks.hpp"
 #include "mpi/on_ranks.hpp"
@@ -96,6 +99,36 @@ TEST(Rebalance, leaves_nothing_to_share_out_among_bodies_that_only_fly) {
     find_couples(part);
     EXPECT_EQ(part.domain.counts.migrations, 2);
   });
+}
+
+// A stress counts what contacts do: as the last step found it, until the next one.
+TEST(Rebalance, leaves_the_stress_of_spheres_as_it_is) {
+  const Slab array = spheres_between_walls();
+  const auto box = std::find_if(array.config.probes.begin(), array.config.probes.end(),
+                                [](const ProbeConfig& p) { return p.quantity == "stress_zz"; });
+  for (const Space space : {Space::host, Space::shadow})
+    simulate_ranks(3, 3, [&](Communicator& simulated) {
+      TimedRank ranks(simulated);
+      auto whole = array.world(1);
+      auto part = share_out(whole, ranks, {}, space);
+      const auto stress = [&] {
+        Readings all;
+        for (const Readings& own : from_each(ranks, dem::read_own(part, *box))) all = all + own;
+        return all.reduced("mean");
+      };
+      part.domain.pace.resume(ranks);
+      for (int i = 0; i < 200; ++i) {
+        step(part);
+        ranks.work(ranks.rank() == 0 ? 30.0 : 10.0);
+      }
+      part.domain.pace.pause(ranks);
+      const std::int64_t cuts = part.domain.counts.cuts;
+      const double before = stress();
+      rebalance(part);
+      EXPECT_GT(part.domain.counts.cuts, cuts);
+      EXPECT_LT(before, 0.0);
+      EXPECT_EQ(stress(), before);
+    });
 }
 
 TEST(Rebalance, counts_what_the_first_sharing_took_where_elements_lie_on_a_device) {

@@ -39,7 +39,16 @@ inline Slab slab(const std::vector<std::string>& overrides = {}) {
   return {config(overrides), model};
 }
 
-/// A piece of it, free at its edges, with a bar each way.
+/// The small array of spheres between six walls, five of which press by servos.
+inline Slab spheres_between_walls() {
+  const std::string folder = std::string(source_dir) + "/cases/triaxial";
+  Slab array;
+  array.config = read_case<dem::Config>(folder + "/small.toml", {});
+  array.model = std::make_shared<const dem::Model>(build_model(array.config, folder));
+  return array;
+}
+
+/// A piece of the slab, free at its edges, with a bar each way.
 inline Slab slab_piece() {
   Slab piece;
   piece.config = read_case<dem::Config>(std::string(source_dir) + "/cases/rc_slab/small.toml", {});
