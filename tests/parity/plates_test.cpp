@@ -162,16 +162,25 @@ TEST(Plate, of_a_face_keeps_its_force_through_a_blow) {
   EXPECT_LT(deviation_in_a_blow(false, 0.0), 1e-5);
 }
 
+/// A block of tetrahedra one side of which, at y = 0.02, is oblique: seen along z, x and y there go
+/// together.
+prepare::TetMesh oblique(double middle, double edge) {
+  constexpr double width = 0.04, slope = 0.5;
+  prepare::TetMesh mesh = fdem3::testing::box({0.0, middle, 0.0}, {width, width, width}, edge);
+  for (Vec3& x : mesh.point) x.y += slope * x.x * (1.0 - std::abs(x.y - 0.5 * width) / width);
+  return mesh;
+}
+
 /// Two blocks of tetrahedra side by side, of both of which a servo presses the same face, are
-/// driven into each other: contacts of elements of the face act on it.
+/// driven into each other: contacts of elements of the face act on it, obliquely.
 TEST(Plate, of_a_face_knows_what_contacts_do_to_it) {
   using fdem3::testing::far;
   constexpr double force = 4e4, pressed = 1.5e-4;
   fdem3::testing::Scene s;
   s.material(30e9, 0.2, 2500.0).damping = 0.5;
   s.config.local_damping = 0.7;
-  s.body("left", fdem3::testing::box({0.0, 0.0, 0.0}, {0.04, 0.04, 0.04}, 0.02));
-  s.body("right", fdem3::testing::box({0.0, 0.0400001, 0.0}, {0.04, 0.04, 0.04}, 0.013));
+  s.body("left", oblique(0.0, 0.02));
+  s.body("right", oblique(0.0400001, 0.013));
   s.support("foot", {-far, -far, -far}, {-0.0199, far, far}, {"x"});
   s.support("wall", {-0.0198, -far, -far}, {0.0198, -0.0199, far}, {"y"});
   fdem3::SupportConfig& drive =

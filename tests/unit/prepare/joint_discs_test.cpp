@@ -185,6 +185,10 @@ TEST(CrackNetwork, refuses_what_would_leave_slivers) {
   EXPECT_FALSE(network.fits(moved(wall, {0.0, 0.0, 0.45}))) << "it hardly passes through";
   EXPECT_TRUE(network.fits(moved(wall, {0.0, 0.0, 0.65})));
   EXPECT_FALSE(network.fits(moved(wall, {0.95, 0.0, 0.0}))) << "beside the rim";
+  EXPECT_FALSE(network.fits(moved(wall, {1.05, 0.0, 0.0}))) << "outside of the rim";
+  EXPECT_TRUE(network.fits(moved(wall, {1.11, 0.0, 0.0})));
+  const Corners3 strip{{0.0, -0.04, -0.5}, {0.0, 0.04, -0.5}, {0.0, 0.04, 0.5}, {0.0, -0.04, 0.5}};
+  EXPECT_FALSE(network.fits(strip)) << "it is narrower than that";
   EXPECT_FALSE(network.fits(moved(wall, {0.0, 0.45, 0.0}))) << "it ends beside the rim";
   EXPECT_FALSE(network.fits(moved(wall, {0.0, 1.45, 0.0}))) << "it meets a corner's width";
   EXPECT_TRUE(network.fits(moved(wall, {0.0, 0.8, 0.0})));
@@ -197,6 +201,57 @@ TEST(CrackNetwork, refuses_what_would_leave_slivers) {
       {-0.7, -0.3, 0.3}, {-0.05, -0.3, 0.3}, {-0.05, -0.3, -0.3}, {-0.7, -0.3, -0.3}};
   EXPECT_FALSE(network.fits(third)) << "its line in the floor ends beside that of the wall";
   EXPECT_TRUE(network.fits(moved(third, {-0.2, 0.0, 0.0})));
+  // Across both, its side leaves the floor and the wall at some distance from each other.
+  const auto aslant = [](double steepness, double up_the_wall) {
+    const auto x = [&](double z) { return (z - up_the_wall) / steepness; };
+    return Corners3{
+        {x(-0.3), -0.3, -0.3}, {x(0.75), -0.3, 0.75}, {-2.0, -0.3, 0.75}, {-2.0, -0.3, -0.3}};
+  };
+  EXPECT_FALSE(network.fits(aslant(3.0, 0.15)))
+      << "its line in the floor ends beside that in which floor and wall meet";
+  EXPECT_FALSE(network.fits(aslant(0.25, 0.05))) << "and here that in the wall";
+  EXPECT_TRUE(network.fits(aslant(1.0, 0.2)));
+}
+
+TEST(CrackNetwork, refuses_the_same_whichever_comes_first) {
+  const Corners3 floor{{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}, {-1.0, 1.0, 0.0}};
+  const auto fits_after = [](const Corners3& first, const Corners3& second) {
+    CrackNetwork network(0.1);
+    network.add_crack(first);
+    return network.fits(second);
+  };
+  for (const double end : {0.8, 0.95})
+    for (const double low : {-0.5, -0.05, 0.15}) {
+      const Corners3 wall{{0.0, -0.5, low}, {0.0, end, low}, {0.0, end, 0.5}, {0.0, -0.5, 0.5}};
+      const bool fits = low > 0.1 || (end < 0.9 && low < -0.1);
+      EXPECT_EQ(fits_after(floor, wall), fits) << end << " " << low;
+      EXPECT_EQ(fits_after(wall, floor), fits) << end << " " << low;
+    }
+}
+
+/// Floor and ramp meet at 30 degrees; a side of the third leaves them where they are too near.
+TEST(CrackNetwork, refuses_lines_of_one_crack_that_end_beside_each_other) {
+  const Corners3 floor{{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}, {-1.0, 1.0, 0.0}};
+  const double rise = 0.6 * std::tan(pi / 6.0);
+  const Corners3 ramp{{-0.6, -0.8, -rise}, {0.6, -0.8, rise}, {0.6, 0.8, rise}, {-0.6, 0.8, -rise}};
+  CrackNetwork network(0.1);
+  network.add_crack(floor);
+  EXPECT_TRUE(network.fits(ramp));
+  network.add_crack(ramp);
+  const auto from = [](double x) {
+    return Corners3{{x, 0.1, -0.5}, {0.8, 0.1, -0.5}, {0.8, 0.1, 0.5}, {x, 0.1, 0.5}};
+  };
+  EXPECT_FALSE(network.fits(from(0.15)));
+  EXPECT_TRUE(network.fits(from(0.25)));
+}
+
+TEST(CrackNetwork, takes_a_crack_that_ends_in_faces_and_in_the_edge_between_them) {
+  CrackNetwork network(0.1);
+  network.add_face({{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}, {-1.0, 1.0, 0.0}});
+  network.add_face({{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, -1.0, 1.0}, {-1.0, -1.0, 1.0}});
+  EXPECT_TRUE(network.fits({{0.0, -1.0, 0.0}, {0.0, 0.5, 0.0}, {0.0, 0.5, 0.5}, {0.0, -1.0, 0.5}}));
+  EXPECT_FALSE(
+      network.fits({{0.0, -1.0, 0.05}, {0.0, 0.5, 0.05}, {0.0, 0.5, 0.5}, {0.0, -1.0, 0.5}}));
 }
 
 TEST(JointDiscs, come_from_files_or_are_refused_by_line) {
