@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "exec/error.hpp"
 #include "laboratory/rock_tests.hpp"
@@ -294,9 +295,13 @@ constexpr std::array shown{
     Shown{"tangent_800", "tangent at 0.8 GPa", "GPa", 1e-9},
     Shown{"side_ratio", "lateral over axial stress at 1 GPa", "-", 1.0},
     Shown{"pressure_1", "pressure at a linear strain of 1 %", "MPa", 1e-6},
-    Shown{"pressure_2", "pressure at a linear strain of 2 %", "MPa", 1e-6}};
+    Shown{"pressure_2", "pressure at a linear strain of 2 %", "MPa", 1e-6},
+    Shown{"friction_angle", "friction angle", "degrees", 180.0 / pi}};
 const Shown& shown_of(const std::string& name) {
-  return *std::find_if(shown.begin(), shown.end(), [&](const Shown& s) { return name == s.name; });
+  const auto found =
+      std::find_if(shown.begin(), shown.end(), [&](const Shown& s) { return name == s.name; });
+  if (found == shown.end()) throw std::logic_error("no words for " + name);
+  return *found;
 }
 
 }  // namespace

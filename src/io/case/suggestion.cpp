@@ -30,6 +30,19 @@ constexpr std::pair<std::string_view, std::string_view> other_words[] = {
     {"nu", "poisson"},   {"rho", "density"},         {"mu", "friction"},
     {"ft", "tension"},   {"ft", "tensile_strength"}, {"element_size", "mesh_size"}};
 
+/// Up to four known words that hold `word`, of at least three letters: "sandstone-berea or
+/// marble-cherokee".
+std::string holding(const std::string& word, const std::set<std::string>& known) {
+  std::string found;
+  int count = 0;
+  for (const std::string& candidate : known)
+    if (word.size() >= 3 && candidate.find(word) != std::string::npos) {
+      found += (found.empty() ? "" : " or ") + candidate;
+      ++count;
+    }
+  return count <= 4 ? found : "";
+}
+
 }  // namespace
 
 std::string nearest(const std::string& word, const std::set<std::string>& known) {
@@ -54,6 +67,8 @@ std::string suggestion(const std::string& word, const std::set<std::string>& kno
       return "; did you mean " + std::string(key) + "?";
   if (const std::string best = nearest(word, known); !best.empty())
     return "; did you mean " + best + "?";
+  if (const std::string some = holding(word, known); !some.empty())
+    return "; did you mean " + some + "?";
   std::string all;
   for (const std::string& candidate : known) all += (all.empty() ? "" : ", ") + candidate;
   return known.size() <= 12 && !known.empty() ? "; allowed are " + all : "";

@@ -104,6 +104,14 @@ std::string problem(const std::string& method, const std::string& keys) {
   return "";
 }
 
+TEST(NamedMaterials, OfferTheRocksThatAWordIsPartOf) {
+  EXPECT_NE(problem("fdem2d", "use = \"granite\"")
+                .find("\"granite\" is no material of the program; did you mean "
+                      "granite-lac-du-bonnet or granite-pikes-peak?"),
+            std::string::npos)
+      << problem("fdem2d", "use = \"granite\"");
+}
+
 TEST(NamedMaterials, NamesTheLineOfAMaterialThatThereIsNot) {
   EXPECT_NE(
       problem("dem3d", "use = \"C31\"")

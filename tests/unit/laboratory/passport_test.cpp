@@ -285,7 +285,12 @@ TEST(Passport, HoldsAPressedPlateAgainstTheAngleByItsStrength) {
   EXPECT_NEAR(met[2].tolerance, 0.04 / std::asin(0.6), 1e-4);
   EXPECT_TRUE(missed[0].pass());
   EXPECT_FALSE(missed[1].pass());
-  EXPECT_FALSE(missed[2].pass());  // N = 3.58
+  EXPECT_FALSE(missed[2].pass());                                   // N = 3.58
+  const std::string page = passport_page("m", "Plates.", {}, met);  // N = 4.275
+  EXPECT_NE(page.find("| plates, free and pressed | friction angle | degrees | 38.38 (1) | 36.87 | "
+                      "+4.1 % | pass |\n"),
+            std::string::npos)
+      << page;
 }
 
 TEST(RockSpecimens, AreCasesWithoutAProblem) {
