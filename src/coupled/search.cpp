@@ -1,10 +1,13 @@
 // Faces near spheres: the shared search over what can touch of both methods.
 
+#include <algorithm>
 #include <bit>
 
 #include "core/rows.hpp"
 #include "core/select.hpp"
 #include "coupled/world.hpp"
+#include "domain/owned.hpp"
+#include "domain/together.hpp"
 #include "exec/for_each.hpp"
 #include "exec/timers.hpp"
 
@@ -118,42 +121,122 @@ struct BoxOfListed {
   View<const Index> listed;
   BR_HD Box operator()(Index i) const { return boxes(listed[i]); }
 };
-template <class Boxes>
+/// A sphere that may reach a tetrahedron.
+struct NearSphere {
+  Box box;
+  Index number;
+};
+/// A tetrahedron that may be reached, with the faces that press on spheres.
+struct NearSolid {
+  Box box;
+  Index number, count;
+  Index face[PressingFaces::most];  ///< 4 number + k
+  Index body[PressingFaces::most];
+};
+struct ListSpheres {
+  static constexpr const char* name = "coupled.list_spheres";
+  BoxOfListed<BoxOfSphere> boxes;
+  View<const GlobalId> id;
+  View<NearSphere> near;
+  BR_HD void operator()(Index i) const { near[i] = {boxes(i), id[boxes.listed[i]]}; }
+};
+struct ListSolids {
+  static constexpr const char* name = "coupled.list_solids";
+  BoxOfListed<BoxOfTetrahedron> boxes;
+  View<const GlobalId> id;
+  View<NearSolid> near;
+  BR_HD void operator()(Index i) const {
+    const BoxOfTetrahedron& of = boxes.boxes;
+    const Index t = of.tetrahedron[boxes.listed[i]];
+    NearSolid solid{};
+    solid.box = boxes(i);
+    solid.number = id[t];
+    Index faces[PressingFaces::most];
+    solid.count = of.pressing.list(t, faces);
+    for (Index k = 0; k < solid.count; ++k) {
+      solid.face[k] = 4 * id[faces[k] / 4] + faces[k] % 4;
+      solid.body[k] = of.pressing.body[faces[k] / 4];
+    }
+    near[i] = solid;
+  }
+};
+/// Of all ranks, in the order of their numbers.
+template <class Near>
+void bring_together(const Domain& domain, Buffer<Near>& near) {
+  if (domain.single_rank()) return;
+  std::vector<Near> own;
+  copy_to(own, near);
+  std::vector<Near> all = joined(*domain.ranks, own);
+  std::sort(all.begin(), all.end(),
+            [](const Near& a, const Near& b) { return a.number < b.number; });
+  copy_to(near, all);
+}
+/// Around the boxes of all ranks.
+Box around_all(const Domain& domain, const Box& own) {
+  if (domain.single_rank()) return own;
+  Communicator& ranks = *domain.ranks;
+  const auto least = [&](const Vec3& v) {
+    return Vec3{ranks.least(v.x), ranks.least(v.y), ranks.least(v.z)};
+  };
+  return {least(own.low), -least(-own.high)};
+}
+
+template <class Near>
 struct PlaceBoxes {
   static constexpr const char* name = "coupled.place_boxes";
-  BoxOfListed<Boxes> of;
+  View<const Near> near;
   Index first;
   View<Box> boxes;
   View<GlobalId> ids;
   BR_HD void operator()(Index i) const {
-    boxes[first + i] = of(i);
+    boxes[first + i] = near[i].box;
     ids[first + i] = first + i;
   }
 };
 
-/// Spheres and tetrahedra whose boxes overlap, as pairs of boxes: first the spheres'.
+/// Spheres and tetrahedra of all ranks whose boxes overlap, as pairs of boxes: first the spheres'.
 struct Candidates {
-  Buffer<Index> spheres;  ///< of each box
-  Buffer<Index> solids;   ///< places in the reach of tetrahedra, likewise
+  Buffer<NearSphere> spheres;
+  Buffer<NearSolid> solids;
   Pairs pairs;
 };
 
 Candidates candidates(World& w, const BoxOfSphere& spheres, const BoxOfTetrahedron& solids) {
   const Exec& exec = w.spheres->exec;
+  const Domain &of_spheres = w.spheres->domain, &of_solids = w.tetrahedra->domain;
   const Index balls = w.spheres->elements.size(), reaching = w.tetrahedra->reach.element.size();
-  const Box around_solids = fold(exec, reaching, no_box(), solids, Around{});
-  Candidates c{items_where(exec, balls, Reaches<BoxOfSphere>{spheres, around_solids}),
-               Buffer<Index>(exec.space), Pairs(exec.space)};
-  const BoxOfListed<BoxOfSphere> near{spheres, std::as_const(c.spheres).view()};
-  const Box around_spheres = fold(exec, c.spheres.size(), no_box(), near, Around{});
-  c.solids = items_where(exec, reaching, Reaches<BoxOfTetrahedron>{solids, around_spheres});
+  const ListedElement<> tetrahedron{solids.tetrahedron};
+  Candidates c{Buffer<NearSphere>(exec.space), Buffer<NearSolid>(exec.space), Pairs(exec.space)};
+
+  const Box around_solids = around_all(
+      of_solids, fold_owned(exec, of_solids, reaching, no_box(), solids, Around{}, tetrahedron));
+  const Buffer<Index> balls_near = items_where(
+      exec, balls, of_owned(of_spheres, false, Reaches<BoxOfSphere>{spheres, around_solids}));
+  const BoxOfListed<BoxOfSphere> near{spheres, balls_near.view()};
+  const Box around_spheres =
+      around_all(of_spheres, fold(exec, balls_near.size(), no_box(), near, Around{}));
+  const Buffer<Index> solids_near = items_where(
+      exec, reaching,
+      of_owned(of_solids, false, Reaches<BoxOfTetrahedron>{solids, around_spheres}, tetrahedron));
+
+  c.spheres.resize(balls_near.size());
+  for_each(exec, c.spheres.size(),
+           ListSpheres{near, std::as_const(w.spheres->elements.id).view(), c.spheres.view()});
+  c.solids.resize(solids_near.size());
+  for_each(exec, c.solids.size(),
+           ListSolids{{solids, solids_near.view()},
+                      std::as_const(w.tetrahedra->tetrahedra.id).view(),
+                      c.solids.view()});
+  bring_together(of_spheres, c.spheres);
+  bring_together(of_solids, c.solids);
+
   const Index first = c.spheres.size(), all = first + c.solids.size();
   Buffer<Box> boxes(exec.space, all);
   Buffer<GlobalId> ids(exec.space, all);
-  for_each(exec, first, PlaceBoxes<BoxOfSphere>{near, 0, boxes.view(), ids.view()});
+  for_each(exec, first,
+           PlaceBoxes<NearSphere>{std::as_const(c.spheres).view(), 0, boxes.view(), ids.view()});
   for_each(exec, c.solids.size(),
-           PlaceBoxes<BoxOfTetrahedron>{
-               {solids, std::as_const(c.solids).view()}, first, boxes.view(), ids.view()});
+           PlaceBoxes<NearSolid>{std::as_const(c.solids).view(), first, boxes.view(), ids.view()});
   if (all > 0) w.broad_phase.search(exec, boxes, ids, c.pairs);
   return c;
 }
@@ -163,38 +246,39 @@ BR_HD PairKey key_of(Index sphere, Index other) {
          static_cast<std::uint32_t>(other);
 }
 
-/// The faces that press of each pair of a sphere and a tetrahedron; pairs of one kind have none.
-struct FacesOfPairs {
-  PressingFaces pressing;
+/// The tetrahedron of each pair of a sphere and a tetrahedron.
+struct SolidOfPairs {
   Index first;  ///< box of a tetrahedron
-  View<const Index> a, b, spheres, solids, tetrahedron;
+  View<const Index> a, b;
+  View<const NearSphere> spheres;
+  View<const NearSolid> solids;
 
-  BR_HD int list(Index i, Index (&faces)[PressingFaces::most]) const {
-    if (a[i] >= first || b[i] < first) return 0;
-    return pressing.list(tetrahedron[solids[b[i] - first]], faces);
+  /// Null: both are of one kind.
+  BR_HD const NearSolid* operator()(Index i) const {
+    return a[i] >= first || b[i] < first ? nullptr : &solids[b[i] - first];
   }
 };
 struct CountFaces {
   static constexpr const char* name = "coupled.count_faces";
-  FacesOfPairs of;
+  SolidOfPairs of;
   View<Index> count;
   BR_HD void operator()(Index i) const {
-    Index faces[PressingFaces::most];
-    count[i] = of.list(i, faces);
+    const NearSolid* const solid = of(i);
+    count[i] = solid == nullptr ? 0 : solid->count;
   }
 };
 struct ListFaces {
   static constexpr const char* name = "coupled.list_faces";
-  FacesOfPairs of;
+  SolidOfPairs of;
   View<const Index> starts;
   View<PairKey> faces, touches;
   BR_HD void operator()(Index i) const {
-    Index listed[PressingFaces::most];
-    const int count = of.list(i, listed);
-    for (int k = 0; k < count; ++k) {
-      const Index sphere = of.spheres[of.a[i]];
-      faces[starts[i] + k] = key_of(sphere, listed[k]);
-      touches[starts[i] + k] = key_of(sphere, of.pressing.body[listed[k] / 4]);
+    const NearSolid* const solid = of(i);
+    if (solid == nullptr) return;
+    const Index sphere = of.spheres[of.a[i]].number;
+    for (Index k = 0; k < solid->count; ++k) {
+      faces[starts[i] + k] = key_of(sphere, solid->face[k]);
+      touches[starts[i] + k] = key_of(sphere, solid->body[k]);
     }
   }
 };
@@ -290,21 +374,16 @@ void find_faces(World& w) {
                  {t.reach.drift.way(t.time), 0.5 * reach, pressing, t.reach.element.view(),
                   t.reach.reference.view(), t.reach.margin.view()});
 
-  const FacesOfPairs of{pressing,
-                        near.spheres.size(),
-                        near.pairs.a.view(),
-                        near.pairs.b.view(),
-                        near.spheres.view(),
-                        near.solids.view(),
-                        t.reach.element.view()};
+  const SolidOfPairs of{near.spheres.size(), near.pairs.a.view(), near.pairs.b.view(),
+                        near.spheres.view(), near.solids.view()};
   Buffer<Index> starts(exec.space, near.pairs.size() + 1);
   for_each(exec, near.pairs.size(), CountFaces{of, starts.view()});
   const Index count = exclusive_scan(exec, starts);
   Buffer<PairKey> faces(exec.space, count), touches(exec.space, count);
   for_each(exec, near.pairs.size(),
            ListFaces{of, std::as_const(starts).view(), faces.view(), touches.view()});
-  Pairs near_faces = pairs_of(exec, std::move(faces), s.elements.size());
-  Pairs touching = pairs_of(exec, std::move(touches), s.elements.size());
+  Pairs near_faces = pairs_of(exec, std::move(faces), w.given->spheres);
+  Pairs touching = pairs_of(exec, std::move(touches), w.given->spheres);
   book_dropped(w, touching.key);
   w.faces.replace(exec, std::move(near_faces));
   w.touches.replace(exec, std::move(touching));
@@ -407,7 +486,9 @@ void list_once(const Exec& exec, Index count, const First& first, Index more, co
 /// Where the touches, faces and bonds of a sphere are listed, all of them by sphere.
 struct ListSphereRows {
   static constexpr const char* name = "coupled.list_sphere_rows";
-  View<const Index> spheres, touching, near;
+  View<const Index> spheres;  ///< numbers
+  View<const Index> here;     ///< places on this rank; empty: alone, where numbers are places
+  View<const Index> touching, near;
   View<const BallBond> tie;
   View<SphereRow> rows;
   View<Index> row_of_touch;
@@ -418,7 +499,9 @@ struct ListSphereRows {
     };
     const SphereOfTouch of_touch{touching}, of_face{near};
     const SphereOfBond of_bond{tie};
-    const SphereRow row{sphere,
+    const bool alone = here.size == 0;
+    const SphereRow row{alone ? sphere : r,
+                        alone ? sphere : here[r],
                         begin(of_touch, touching.size, sphere),
                         begin(of_touch, touching.size, sphere + 1),
                         begin(of_face, near.size, sphere),
@@ -438,25 +521,32 @@ void derive(World& w) {
   const View<const BallBond> tie = std::as_const(w.bonds.tie).view();
   const TetrahedronOfFace of_face{std::as_const(w.faces.pairs.b).view()};
   const TetrahedronOfBond of_bond{tie};
-  list_once(exec, near, of_face, tied, of_bond, w.tetrahedra->tetrahedra.size(),
-            w.around.tetrahedron);
+  list_once(exec, near, of_face, tied, of_bond, w.given->tetrahedra, w.around.tetrahedron);
   list_rows(exec, w.around.tetrahedron, near, of_face, w.around.face_starts, w.around.faces);
   list_rows(exec, w.around.tetrahedron, tied, of_bond, w.around.bond_starts, w.around.bonds);
 
   const SphereOfTouch of_touch{std::as_const(w.touches.pairs.a).view()};
   Buffer<Index> spheres(exec.space);
-  list_once(exec, touching, of_touch, tied, SphereOfBond{tie}, w.spheres->elements.size(), spheres);
+  list_once(exec, touching, of_touch, tied, SphereOfBond{tie}, w.given->spheres, spheres);
+  if (!w.spheres->domain.single_rank()) make_border(w, spheres);
   w.rows.resize(spheres.size());
   w.row_of_touch.clear();
   w.row_of_touch.resize(touching);
   for_each(exec, spheres.size(),
-           ListSphereRows{std::as_const(spheres).view(), of_touch.sphere,
-                          std::as_const(w.faces.pairs.a).view(), tie, w.rows.view(),
-                          w.row_of_touch.view()});
+           ListSphereRows{std::as_const(spheres).view(), std::as_const(w.border.sphere_here).view(),
+                          of_touch.sphere, std::as_const(w.faces.pairs.a).view(), tie,
+                          w.rows.view(), w.row_of_touch.view()});
   w.bonded.resize(w.rows.size());
   w.pressed.clear();
   w.pressed.resize(near);
   w.step.resize(w.around.tetrahedron.size());
+}
+
+std::int64_t sharings(const World& w) {
+  return w.spheres->domain.counts.migrations + w.tetrahedra->domain.counts.migrations;
+}
+void derive_if_shared_anew(World& w) {
+  if (!w.spheres->domain.single_rank() && w.border.sharings != sharings(w)) derive(w);
 }
 
 }  // namespace breccia::coupled

@@ -92,35 +92,41 @@ void press_spheres_again(World& w) {
 
 void press(World& w) {
   const dem::World& s = *w.spheres;
+  follow_owners(w);
   const StageTime timed(s.exec, "coupling");
-  const dem::Elements& e = s.elements;
-  const fdem3::Tetrahedra& t = w.tetrahedra->tetrahedra;
+  const Meeting m = meeting(w);
   for_each(s.exec, w.bonds.size(),
-           BondForces{s.time, s.last_dt, e.state.view(), e.orientation.view(), t.nodes.view(),
-                      w.given->bonds.view(), w.bonds.tie.view(), w.bonds.state.view()});
+           BondForces{s.time, s.last_dt, m.spheres, m.orientation, m.nodes, w.given->bonds.view(),
+                      m.tie, w.bonds.state.view()});
   for_each(s.exec, w.rows.size(),
-           MarkBonded{w.rows.view(), w.bonds.tie.view(), w.bonds.state.view(), w.bonded.view()});
+           MarkBonded{w.rows.view(), m.tie, w.bonds.state.view(), w.bonded.view()});
   for_each(
       s.exec, w.touches.size(),
-      PressFaces{s.last_dt, e.state.view(), e.material.view(), t.nodes.view(), t.material.view(),
-                 t.group.view(), t.exposed.view(), w.given->laws.view(), w.given->materials,
-                 w.rows.view(), w.row_of_touch.view(), w.bonded.view(), w.touches.pairs.b.view(),
-                 w.faces.pairs.b.view(), w.touches.history.state.view(),
+      PressFaces{s.last_dt, m.spheres, m.sphere_material, m.nodes, m.material, m.body, m.exposed,
+                 w.given->laws.view(), w.given->materials, w.rows.view(), w.row_of_touch.view(),
+                 w.bonded.view(), w.touches.pairs.b.view(), m.face, w.touches.history.state.view(),
                  w.touches.history.force.view(), w.faces.history.force.view(), w.pressed.view()});
   press_spheres_again(w);
-  for_each(
-      s.exec, w.around.tetrahedron.size(),
-      AddToTetrahedra{w.around.tetrahedron.view(), w.around.face_starts.view(),
-                      w.around.faces.view(), w.around.bond_starts.view(), w.around.bonds.view(),
-                      w.faces.pairs.b.view(), w.faces.history.force.view(), w.pressed.view(),
-                      w.bonds.tie.view(), w.bonds.state.view(), fdem3::stable_step(*w.tetrahedra),
-                      w.tetrahedra->tetrahedra.force.view(), w.step.view()});
+  for_each(s.exec, w.around.tetrahedron.size(),
+           AddToTetrahedra{m.solid_here, w.around.face_starts.view(), w.around.faces.view(),
+                           w.around.bond_starts.view(), w.around.bonds.view(), m.face,
+                           w.faces.history.force.view(), w.pressed.view(), m.tie,
+                           w.bonds.state.view(), fdem3::stable_step(*w.tetrahedra),
+                           w.tetrahedra->tetrahedra.force.view(), w.step.view()});
 }
 
 namespace {
 struct StepOfRow {
   View<const double> step;
   BR_HD double operator()(Index i) const { return step[i]; }
+};
+/// Inertia over stiffness of a sphere with what tetrahedra add.
+struct CriticalOfRow {
+  View<const SphereRow> rows;
+  View<const double> critical;
+  BR_HD double operator()(Index i) const {
+    return rows[i].here < 0 ? largest_least : critical[rows[i].here];
+  }
 };
 }  // namespace
 
@@ -132,10 +138,17 @@ void note_stable_step(World& w) {
 void choose_common_step(World& w) {
   dem::World& s = *w.spheres;
   fdem3::World& t = *w.tetrahedra;
-  const double least =
-      fold(s.exec, w.step.size(), largest_least, StepOfRow{std::as_const(w.step).view()}, Least{});
+  const double least = s.domain.least(
+      fold(s.exec, w.step.size(), largest_least, StepOfRow{std::as_const(w.step).view()}, Least{}));
   const AllowedStep allowed{w.given->safety, t.given->time.max_step};
-  const double common = std::min({s.next_dt, w.stable_step, allowed(least, s.last_dt)});
+  double common = std::min({s.next_dt, w.stable_step, allowed(least, s.last_dt)});
+  if (!s.domain.single_rank() && s.exec.space != Space::host) {
+    // Launches of ranks note the least number of spheres before tetrahedra add to it.
+    const CriticalOfRow critical{std::as_const(w.rows).view(), std::as_const(s.critical).view()};
+    const double lower =
+        s.domain.least(fold(s.exec, w.rows.size(), largest_least, critical, Least{}));
+    common = std::min(common, dem::step_rule(s)(lower, s.last_dt));
+  }
   s.next_dt = t.next_dt = common;
 }
 
@@ -172,9 +185,7 @@ struct BondShares {
 }  // namespace
 
 BondsView bonds_view(const World& w) {
-  const dem::Elements& e = w.spheres->elements;
-  return {e.state.view(), e.orientation.view(), w.tetrahedra->tetrahedra.nodes.view(),
-          w.given->bonds.view(), w.bonds.tie.view()};
+  return {meeting(w), w.given->bonds.view()};
 }
 
 Energies held(const World& w) {
@@ -199,14 +210,14 @@ struct TouchedBy {
   BR_HD ServoReading operator()(Index r) const {
     const SphereRow& row = rows[r];
     ServoReading met;
-    if (led_by[row.sphere] != motion) return met;
+    if (row.here < 0 || led_by[row.here] != motion) return met;
     double stiffness = 0.0;
     for (Index b = row.bond; b < row.bond_end; ++b) stiffness += bonds[b].force.straight;
     for (Index t = row.touch; t < row.touch_end; ++t) stiffness += touches[t].straight;
     if (!(stiffness > 0.0)) return met;
     met.stiffness.add(stiffness);
     met.flow.add(stiffness * velocity);
-    met.mass.add(mass[row.sphere]);
+    met.mass.add(mass[row.here]);
     return met;
   }
 };

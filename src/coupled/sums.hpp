@@ -18,6 +18,7 @@ struct AddToSpheres {
 
   BR_HD void operator()(Index i) const {
     const SphereRow& row = rows[i];
+    if (row.here < 0) return;
     SphereForce sum{};
     const auto add = [&sum](const SphereForce& more) {
       sum.force += more.force;
@@ -27,7 +28,7 @@ struct AddToSpheres {
     };
     for (Index b = row.bond; b < row.bond_end; ++b) add(bonds[b].force);
     for (Index t = row.touch; t < row.touch_end; ++t) add(touches[t]);
-    const Index e = row.sphere;
+    const Index e = row.here;
     force[e] += sum.force;
     torque[e] += sum.torque;
     const double slow = max(sum.straight / mass[e], sum.turning / inertia[e]);
@@ -38,14 +39,15 @@ struct AddToSpheres {
 
 /// Tetrahedra that spheres are near or tied to, and the places of both in their lists.
 struct TetrahedronRows {
-  Buffer<Index> tetrahedron;
+  Buffer<Index> tetrahedron;         ///< number
   Buffer<Index> face_starts, faces;  ///< into NearFaces
   Buffer<Index> bond_starts, bonds;  ///< into BallBonds
 };
 
 struct AddToTetrahedra {
   static constexpr const char* name = "coupled.add_to_tetrahedra";
-  View<const Index> tetrahedron, face_starts, faces, bond_starts, bonds;
+  View<const Index> here;  ///< of each row, -1: another rank owns it
+  View<const Index> face_starts, faces, bond_starts, bonds;
   View<const Index> face;
   View<const FaceForce> on_face;
   View<const Pressed> pressed;
@@ -56,7 +58,11 @@ struct AddToTetrahedra {
   View<double> step;  ///< stable, of each row  [s]
 
   BR_HD void operator()(Index i) const {
-    const Index t = tetrahedron[i];
+    const Index t = here[i];
+    if (t < 0) {
+      step[i] = largest_least;
+      return;
+    }
     fdem3::Corners sum = force[t];
     double stiffness[4] = {};  // sums of the rows of the corners
     for (Index e = bond_starts[i]; e < bond_starts[i + 1]; ++e) {

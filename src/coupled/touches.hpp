@@ -76,7 +76,8 @@ struct Pressed {
 
 /// Spheres that are near a face or bonded to one: where their touches, faces and bonds are listed.
 struct SphereRow {
-  Index sphere;
+  Index sphere;  ///< place in the arrays of a Meeting
+  Index here;    ///< place in this rank's world, -1: another rank owns it
   Index touch, touch_end, face, face_end, bond, bond_end;
 };
 

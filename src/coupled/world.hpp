@@ -9,6 +9,7 @@
 #include "core/read_only.hpp"
 #include "core/servo.hpp"
 #include "core/step_clock.hpp"
+#include "coupled/border.hpp"
 #include "coupled/setup/config.hpp"
 #include "coupled/sums.hpp"
 #include "dem/world.hpp"
@@ -18,9 +19,10 @@ namespace breccia::coupled {
 
 /// Constants of a case.
 struct Case {
-  double safety = 0.7;            ///< share of the stable step  [-]
-  double skin = 0.0;              ///< margin of the search beyond those of both methods  [m]
-  Index materials = 0;            ///< of tetrahedra
+  double safety = 0.7;                ///< share of the stable step  [-]
+  double skin = 0.0;                  ///< margin of the search beyond those of both methods  [m]
+  Index materials = 0;                ///< of tetrahedra
+  Index spheres = 0, tetrahedra = 0;  ///< of all ranks
   Buffer<PressLaw> laws;          ///< of materials p of spheres, q of tetrahedra at p materials + q
   Buffer<fdem::JointBond> bonds;  ///< indexed by BallBond::law
   std::vector<std::string> bond_names;  ///< likewise
@@ -41,6 +43,8 @@ struct LastSearch {
 };
 
 /// Each line tells meaning and unit, then (length; who writes it), in the words of dem/world.hpp.
+/// On ranks both worlds are parts, and each rank holds all that is between the wholes, by numbers
+/// of the whole.
 struct World {
   /// Empty, every array in the space of both.
   World(dem::World& of_spheres, fdem3::World& of_tetrahedra);
@@ -59,6 +63,7 @@ struct World {
     state(touches);
     state(faces);
     given.each_array(visit);
+    border.each_array(visit);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(rows, row_of_touch, around.tetrahedron, around.face_starts, around.faces,
          around.bond_starts, around.bonds, broad_phase, bonded, pressed, step);
@@ -77,6 +82,7 @@ struct World {
   Buffer<SphereRow> rows;      ///< (spheres that are near or bonded; derive)
   Buffer<Index> row_of_touch;  ///< (touches; derive)
   TetrahedronRows around;      ///< (derive)
+  Border border;               ///< on ranks (derive; what moves: pairs)
   BroadPhase broad_phase;      ///< scratch of the search (search)
 
   // Results of a step, overwritten by the next one.
@@ -85,12 +91,17 @@ struct World {
   Buffer<double> step;          ///< (rows of `around`; sums)  [s]
 };
 
-/// Both worlds have evaluated their own forces; those between them come on top.
+/// Both worlds have evaluated their own forces; those between them come on top. All ranks call it,
+/// with their parts.
 /// @throws InputError naming what does not fit
 World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrahedra);
 
-/// Fills what follows from the state, after set-up, loading and a search.
+/// Fills what follows from the state, after set-up, loading and a search. All ranks call it.
 void derive(World& w);
+/// How often ranks have shared out items of both.
+std::int64_t sharings(const World& w);
+/// After items may have been shared out between two steps. All ranks call it.
+void derive_if_shared_anew(World& w);
 
 /// One step of the spheres and the tetrahedra.
 void step(World& w);
@@ -119,16 +130,14 @@ void find_faces(World& w);
 
 /// Bonds as kernels read them.
 struct BondsView {
-  View<const dem::ElementState> spheres;
-  View<const Quaternion> orientation;
-  View<const fdem3::TetrahedronNodes> nodes;
+  Meeting of;
   View<const fdem::JointBond> laws;
-  View<const BallBond> tie;
 
   /// [J]
   BR_HD double stored(Index i, const BallBondState& bond) const {
-    const BallBond& b = tie[i];
-    const BondGap g = gap_of(b, spheres[b.sphere], orientation[b.sphere], nodes[b.tetrahedron]);
+    const BallBond& b = of.tie[i];
+    const BondGap g =
+        gap_of(b, of.spheres[b.sphere], of.orientation[b.sphere], of.nodes[b.tetrahedron]);
     const fdem::StoredEnergy energy =
         fdem::edge_stored(laws[b.law], 1.0, b.length, g.open, g.slide, bond.point);
     return b.area * (energy.open + energy.slide);

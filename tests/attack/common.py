@@ -16,7 +16,6 @@ BUILD = os.environ.get("BRECCIA_BUILD", os.path.join(HERE, "..", "..", "build", 
 PROGRAM = os.environ.get("BRECCIA", os.path.join(BUILD, "breccia"))
 TOOLS = os.path.join(BUILD, "tests", "attack")
 CASES = {name: os.path.join(HERE, name + ".toml") for name in ("dem", "fdem", "fdem3", "bolted", "fluids", "coupled")}
-ALONE = ("coupled",)  # runs in one process
 DEVICE = []  # words that choose the device of `run` and `resume`
 HANG = 60  # seconds after which a small run hangs
 COLUMNS = "{:<34} {:>9} {:>9} {:>7}  {}"

@@ -11,7 +11,7 @@ import sys
 import time
 
 import common
-from common import ALONE, Attack, CASES, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
+from common import Attack, CASES, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
 
 STEPS = 400
 INTERVAL = 20  # steps between checkpoints, as the cases say
@@ -149,8 +149,6 @@ def main():
         if ranks > 1 and (options.device or shutil.which("mpirun") is None):
             continue
         for case in CASES:
-            if case in ALONE and ranks > 1:
-                continue
             attack = Attack(f"{name}, {case}", "trials")
             attack.live = attack.early = attack.resumed = attack.launcher = 0
             begun = time.time()

@@ -11,6 +11,7 @@
 #include "coupled/setup/tie.hpp"
 #include "coupled/world.hpp"
 #include "dem/stepping/step.hpp"
+#include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "fdem3/stepping/step.hpp"
 
@@ -57,6 +58,33 @@ void warn_of_long(const BondConfig& bond, const fdem::JointBond& law,
         bond.name, longest));
 }
 
+/// Items of the world that ranks share, or of the one that is alone.
+Index count_of_all(const Domain& domain, Index here) {
+  if (domain.single_rank()) return here;
+  std::vector<std::int64_t> owned{domain.counts.owned};
+  domain.ranks->add_up(owned);
+  return static_cast<Index>(owned[0]);
+}
+
+/// What the items of all ranks have, in the order of their numbers.
+template <class T>
+Buffer<T> of_all(const Domain& domain, const Buffer<GlobalId>& ids, const Buffer<T>& items) {
+  if (domain.single_rank()) return items;
+  struct Numbered {
+    GlobalId id;
+    T item;
+  };
+  std::vector<Numbered> own;
+  for (Index i = 0; i < ids.size(); ++i)
+    if (domain.owns(i)) own.push_back({ids.data()[i], items.data()[i]});
+  std::vector<Numbered> all = joined(*domain.ranks, own);
+  std::sort(all.begin(), all.end(),
+            [](const Numbered& a, const Numbered& b) { return a.id < b.id; });
+  Buffer<T> whole(Space::host, static_cast<Index>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) whole.data()[i] = all[i].item;
+  return whole;
+}
+
 void warn_of_overlaps(const World& w, std::vector<std::string>& warnings) {
   const double touching = count(w).touching;
   if (touching > 0.0)
@@ -81,15 +109,29 @@ World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrah
   given.safety = config.time.safety;
   given.skin = spheres.given->search.margin * spheres.given->mean_radius;
   given.materials = static_cast<Index>(config.tetrahedra.materials.size());
+  given.spheres = count_of_all(spheres.domain, spheres.elements.size());
+  given.tetrahedra = count_of_all(tetrahedra.domain, tetrahedra.tetrahedra.size());
   copy_to(given.laws, press_laws(config));
   std::vector<fdem::JointBond> laws;
   std::vector<BallBond> ties;
-  const OnHost elements(spheres.elements, space);
-  const OnHost solids(tetrahedra.tetrahedra, space);
+  dem::Elements elements;
+  fdem3::Tetrahedra solids;
+  if (!config.bonds.empty()) {
+    const OnHost own(spheres.elements, space);
+    elements.id = of_all(spheres.domain, own->id, own->id);
+    elements.group = of_all(spheres.domain, own->id, own->group);
+    elements.state = of_all(spheres.domain, own->id, own->state);
+    const OnHost mesh(tetrahedra.tetrahedra, space);
+    solids.id = of_all(tetrahedra.domain, mesh->id, mesh->id);
+    solids.group = of_all(tetrahedra.domain, mesh->id, mesh->group);
+    solids.material = of_all(tetrahedra.domain, mesh->id, mesh->material);
+    solids.nodes = of_all(tetrahedra.domain, mesh->id, mesh->nodes);
+    solids.exposed = of_all(tetrahedra.domain, mesh->id, mesh->exposed);
+  }
   for (const BondConfig& bond : config.bonds) {
     const std::vector<BallBond> more =
-        ties_of(bond, static_cast<Index>(laws.size()), w, *elements, *solids);
-    const Index material = solids->material.data()[more.front().tetrahedron];
+        ties_of(bond, static_cast<Index>(laws.size()), w, elements, solids);
+    const Index material = solids.material.data()[more.front().tetrahedron];
     laws.push_back(
         bond_law(bond, config.tetrahedra.materials[static_cast<std::size_t>(material)].young));
     warn_of_long(bond, laws.back(), more, given.warnings);
@@ -103,6 +145,7 @@ World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrah
   w.bonds.state.resize(static_cast<Index>(ties.size()));
 
   w.stable_step = tetrahedra.next_dt;
+  if (!spheres.domain.single_rank()) dem::find_critical(spheres);
   find_faces(w);
   press(w);
   fdem3::share_bundle_forces(tetrahedra);

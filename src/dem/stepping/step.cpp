@@ -137,13 +137,24 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 
-double step_allowed_now(const World& w) {
-  World trial = w;  // a force law may note what it sees, so it looks at a copy
+namespace {
+/// A copy with the forces of the state as it is: a force law may note what it sees.
+World evaluated(const World& w) {
+  World trial = w;
   trial.graph.clear();
   trial.last_dt = 0.0;  // nothing has moved since
   trial.step = 0;       // a step that evaluates
   evaluate_forces(trial);
-  return trial.next_dt;
+  return trial;
+}
+}  // namespace
+
+double step_allowed_now(const World& w) {
+  return evaluated(w).next_dt;
+}
+
+void find_critical(World& w) {
+  w.critical = evaluated(w).critical;
 }
 
 void evaluate_anew(World& w) {

@@ -51,6 +51,10 @@ void take_step(Run&& run, World& w) {
 /// it; the world stays as it is.  [s]
 double step_allowed_now(const World& w);
 
+/// Critical numbers of the state as it is, which do not go along when elements are shared out. All
+/// ranks call it; the rest of the world stays as it is.
+void find_critical(World& w);
+
 /// Forces of the state as it is, after what links and contacts bear has changed between two steps.
 /// All ranks call it.
 void evaluate_anew(World& w);

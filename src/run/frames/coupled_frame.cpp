@@ -6,23 +6,26 @@ namespace breccia {
 
 void add_presses(const coupled::World& w, std::vector<FrameContact>& contacts) {
   const Space space = w.spheres->exec.space;
-  const OnHost spheres(w.spheres->elements.state, space);
-  const OnHost sphere_id(w.spheres->elements.id, space);
-  const OnHost nodes(w.tetrahedra->tetrahedra.nodes, space);
-  const OnHost solid_id(w.tetrahedra->tetrahedra.id, space);
+  const coupled::Border& border = w.border;
+  const bool alone = w.spheres->domain.single_rank();
+  const OnHost spheres(alone ? w.spheres->elements.state : border.spheres, space);
+  const OnHost nodes(alone ? w.tetrahedra->tetrahedra.nodes : border.nodes, space);
+  const OnHost place(alone ? w.faces.pairs.b : border.face, space);
   const OnHost a(w.faces.pairs.a, space), face(w.faces.pairs.b, space);
   const OnHost forces(w.faces.history.force, space);
-  const auto behind = static_cast<GlobalId>(w.spheres->elements.size());
-  const Index all = w.faces.size();
-  for (Index i = 0; i < all;) {  // by sphere, then face: those of one tetrahedron follow each other
-    const Index from = a->data()[i], to = face->data()[i] / 4;
-    Vec3 force{};
-    for (; i < all && a->data()[i] == from && face->data()[i] / 4 == to; ++i)
-      for (const Vec3& corner : forces->data()[i].at) force += corner;
-    if (dot(force, force) == 0.0) continue;
-    contacts.push_back({sphere_id->data()[from], behind + solid_id->data()[to],
-                        spheres->data()[from].position, centroid(nodes->data()[to]), force});
-  }
+  const OnHost rows(w.rows, space);
+  const GlobalId behind = w.given->spheres;
+  for (const coupled::SphereRow& row : rows->host())  // faces of one tetrahedron follow each other
+    for (Index i = row.face; i < row.face_end;) {
+      const Index to = face->data()[i] / 4, solid = place->data()[i] / 4;
+      const Index number = a->data()[i];
+      Vec3 force{};
+      for (; i < row.face_end && face->data()[i] / 4 == to; ++i)
+        for (const Vec3& corner : forces->data()[i].at) force += corner;
+      if (dot(force, force) == 0.0) continue;
+      contacts.push_back({number, behind + to, spheres->data()[row.sphere].position,
+                          centroid(nodes->data()[solid]), force});
+    }
 }
 
 }  // namespace breccia

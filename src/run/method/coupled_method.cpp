@@ -6,6 +6,7 @@
 
 #include "core/on_host.hpp"
 #include "dem/setup/moduli.hpp"
+#include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
 #include "run/frames/coupled_frame.hpp"
@@ -20,22 +21,33 @@ namespace {
 class CoupledMethod final : public Method {
  public:
   CoupledMethod(const coupled::Config& config, const coupled::Parts& parts,
-                const coupled::Model& model, const Exec& exec)
+                const coupled::Model& model, const Exec& exec, Communicator* ranks)
       : threads_(exec.threads),
+        ranks_(ranks),
         stages_(config.stages.begin(), config.stages.end()),
         probes_(parts.probes),
-        spheres_(dem_part(parts.spheres, model.spheres, exec)),
-        tetrahedra_(fdem3_part(parts.tetrahedra, model.tetrahedra, exec)),
+        spheres_(dem_part(parts.spheres, model.spheres, exec, ranks)),
+        tetrahedra_(fdem3_part(parts.tetrahedra, model.tetrahedra, exec, ranks)),
         w_(coupled::make_world(config, *spheres_.world, *tetrahedra_.world)) {
     for (const dem::StageConfig& stage : parts.spheres.stages)
       evaluates_anew_.push_back(dem::changes_moduli(stage));
   }
 
-  Advanced advance(const StopAt&) override {
-    coupled::step(w_);
-    spheres_.method->steer(coupled::touched_by_servos(w_));
-    tetrahedra_.method->steer({});
-    return {1, spheres_.world->last_dt, spheres_.world->last_dt};
+  Advanced advance(const StopAt& stop) override {
+    if (ranks_ == nullptr) return take_step();
+    Advanced taken;
+    at_once(ranks_, [&] {
+      each_part([](const std::string&, Method& method) { method.begin_steps(); });
+      coupled::derive_if_shared_anew(w_);
+      do {
+        const Advanced one = take_step();
+        taken.dt_min = taken.steps == 0 ? one.dt_min : std::min(taken.dt_min, one.dt_min);
+        taken.dt_max = std::max(taken.dt_max, one.dt_max);
+        taken.steps += 1;
+      } while (steps() < stop.step && time() < stop.time);
+      each_part([](const std::string&, Method& method) { method.end_steps(); });
+    });
+    return taken;
   }
   std::int64_t steps() const override { return spheres_.world->step; }
   double time() const override { return spheres_.world->time; }
@@ -69,6 +81,7 @@ class CoupledMethod final : public Method {
   EnergyBalance energy() override {
     const EnergyBalance a = spheres_.method->energy(), b = tetrahedra_.method->energy();
     const Energies between = coupled::held(w_);
+    if (!leads(ranks_)) return {};
     EnergyBalance all;
     all.kinetic = a.kinetic + b.kinetic;
     all.elastic = a.elastic + b.elastic + between.elastic.value();
@@ -105,20 +118,27 @@ class CoupledMethod final : public Method {
     return spheres_.method->fastest() + "; " + tetrahedra_.method->fastest();
   }
 
-  Frame frame() override { return paired(frame_of_spheres().frame, tetrahedra_.method->frame()); }
+  Frame frame() override {
+    const Frame spheres = frame_of_spheres().frame, solids = tetrahedra_.method->frame();
+    return leads(ranks_) ? paired(spheres, solids) : Frame();
+  }
   FrameOutput frame_output(const FrameWish& wish) override {
     FrameWish files = wish;
     files.picture.reset();
-    FrameOutput output = breccia::frame_output(frame_of_spheres(), files, threads_);
+    const FramePart spheres = frame_of_spheres();
     const FrameOutput solids = tetrahedra_.method->frame_output(files);
-    if (wish.files)
+    FrameOutput output;
+    if (leads(ranks_)) output = breccia::frame_output(spheres, files, threads_);
+    if (wish.files && leads(ranks_))
       output.files.more = {{frame_of_solids, solids.files.points},
                            {joints_of_solids, solids.files.lines},
                            {contacts_of_solids, solids.files.contacts}};
     if (!wish.picture) return output;
     FrameWish picture = wish;
     picture.files = false;
-    FrameOutput drawn = breccia::frame_output(frame(), picture, threads_);
+    const Frame both = frame();
+    if (!leads(ranks_)) return {};
+    FrameOutput drawn = breccia::frame_output(both, picture, threads_);
     drawn.files = std::move(output.files);
     return drawn;
   }
@@ -182,16 +202,25 @@ class CoupledMethod final : public Method {
   }
   void load(const CheckpointReader* reader) override {
     each_part([&](const std::string& part, Method& method) {
+      if (!leads(ranks_)) return method.load(nullptr);
       const CheckpointReader own = reader->below(part);
       method.load(&own);
     });
-    each_stored(
-        [&](const std::string& name, auto& value) {
-          value = reader->value<std::remove_reference_t<decltype(value)>>(name);
-        },
-        [&](const std::string& name, auto& state) { reader->fields(name, state); });
-    refuse_misfits();
-    coupled::derive(w_);
+    tetrahedra_.world->meets_spheres = true;  // a rank's part is another one now
+    on_first(ranks_, [&] {
+      each_stored(
+          [&](const std::string& name, auto& value) {
+            value = reader->value<std::remove_reference_t<decltype(value)>>(name);
+          },
+          [&](const std::string& name, auto& state) { reader->fields(name, state); });
+      refuse_misfits();
+    });
+    at_once(ranks_, [&] {
+      if (ranks_ != nullptr)
+        each_stored([&](const std::string&, auto& value) { take_from_first(*ranks_, value); },
+                    [&](const std::string&, auto& state) { take_state_from_first(state); });
+      coupled::derive(w_);
+    });
   }
 
  private:
@@ -210,16 +239,38 @@ class CoupledMethod final : public Method {
     state("coupling.touches", w_.touches);
     state("coupling.faces", w_.faces);
   }
-  /// With what presses on tetrahedra.
-  FramePart frame_of_spheres() const {
-    FramePart part = dem_frame(*spheres_.world);
-    add_presses(w_, part.frame.contacts);
+  template <class State>
+  void take_state_from_first(State& state) const {
+    state.each_field([this](const char*, const char*, auto& array) {
+      std::vector<std::remove_cvref_t<decltype(*array.data())>> items;
+      Message message;
+      if (leads(ranks_)) {
+        copy_to(items, array);
+        put_array(message, items);
+      }
+      message = ranks_->from_first(std::move(message));
+      copy_to(array, Unpacking(message).array<typename decltype(items)::value_type>());
+    });
+  }
+  Advanced take_step() {
+    coupled::step(w_);
+    spheres_.method->steer(coupled::touched_by_servos(w_));
+    tetrahedra_.method->steer({});
+    return {1, spheres_.world->last_dt, spheres_.world->last_dt};
+  }
+  /// With what presses on tetrahedra; on rank 0.
+  FramePart frame_of_spheres() {
+    FramePart part;
+    if (ranks_ == nullptr)
+      part = dem_frame(*spheres_.world);
+    else
+      part.frame = spheres_.method->frame();
+    if (leads(ranks_)) add_presses(w_, part.frame.contacts);
     return part;
   }
   /// Places that a file leads to must be there.
   void refuse_misfits() const {
-    const Index spheres = spheres_.world->elements.size(),
-                solids = tetrahedra_.world->tetrahedra.size(),
+    const Index spheres = w_.given->spheres, solids = w_.given->tetrahedra,
                 bodies = static_cast<Index>(tetrahedra_.world->given->groups.size());
     const Space space = spheres_.world->exec.space;
     const auto hold = [space](const Buffer<Index>& places, Index count, const char* section) {
@@ -242,6 +293,7 @@ class CoupledMethod final : public Method {
   }
 
   int threads_;
+  Communicator* ranks_;
   std::vector<StageEnd> stages_;
   std::vector<bool> evaluates_anew_;  ///< whether a stage does so with the forces of spheres
   std::vector<coupled::PlacedProbe> probes_;
@@ -254,12 +306,7 @@ class CoupledMethod final : public Method {
 
 std::unique_ptr<Method> make_method(const coupled::Config& config, const coupled::Model& model,
                                     const Exec& exec, Communicator* ranks) {
-  if (ranks != nullptr)
-    throw InputError(
-        "method = [\"dem3d\", \"fdem3d\"] runs in one process, on all its threads; start it "
-        "without "
-        "mpirun");
-  return std::make_unique<CoupledMethod>(config, coupled::parts_of(config), model, exec);
+  return std::make_unique<CoupledMethod>(config, coupled::parts_of(config), model, exec, ranks);
 }
 
 }  // namespace breccia

@@ -197,8 +197,9 @@ std::unique_ptr<Method> make_method(const dem::Config& config, const dem::Model&
                                     const Exec& exec, Communicator* ranks) {
   return std::make_unique<SimMethod<DemSim>>(config, model, exec, ranks);
 }
-DemPart dem_part(const dem::Config& config, const dem::Model& model, const Exec& exec) {
-  auto method = std::make_unique<SimMethod<DemSim>>(config, model, exec, nullptr);
+DemPart dem_part(const dem::Config& config, const dem::Model& model, const Exec& exec,
+                 Communicator* ranks) {
+  auto method = std::make_unique<SimMethod<DemSim>>(config, model, exec, ranks);
   dem::World* const world = &method->world();
   return {std::move(method), world};
 }

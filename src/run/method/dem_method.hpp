@@ -14,13 +14,14 @@ namespace breccia {
 std::unique_ptr<Method> make_method(const dem::Config& config, const dem::Model& model,
                                     const Exec& exec, Communicator* ranks = nullptr);
 
-/// The method alone on the host, with the world that it steps: for a run that couples it to
+/// The method with the world that it steps, on ranks its part: for a run that couples it to
 /// another.
 struct DemPart {
   std::unique_ptr<Method> method;
   dem::World* world;
 };
-DemPart dem_part(const dem::Config& config, const dem::Model& model, const Exec& exec);
+DemPart dem_part(const dem::Config& config, const dem::Model& model, const Exec& exec,
+                 Communicator* ranks);
 
 /// Elements as spheres with velocity, spin, group and damage; links as lines with kind, state and
 /// force.

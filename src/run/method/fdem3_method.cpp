@@ -87,8 +87,9 @@ std::unique_ptr<Method> make_method(const fdem3::Config& config, const fdem3::Mo
                                     const Exec& exec, Communicator* ranks) {
   return std::make_unique<SimMethod<Fdem3Sim>>(config, model, exec, ranks);
 }
-Fdem3Part fdem3_part(const fdem3::Config& config, const fdem3::Model& model, const Exec& exec) {
-  auto method = std::make_unique<SimMethod<Fdem3Sim>>(config, model, exec, nullptr);
+Fdem3Part fdem3_part(const fdem3::Config& config, const fdem3::Model& model, const Exec& exec,
+                     Communicator* ranks) {
+  auto method = std::make_unique<SimMethod<Fdem3Sim>>(config, model, exec, ranks);
   fdem3::World* const world = &method->world();
   return {std::move(method), world};
 }

@@ -19,7 +19,8 @@ struct Fdem3Part {
   std::unique_ptr<Method> method;
   fdem3::World* world;
 };
-Fdem3Part fdem3_part(const fdem3::Config& config, const fdem3::Model& model, const Exec& exec);
+Fdem3Part fdem3_part(const fdem3::Config& config, const fdem3::Model& model, const Exec& exec,
+                     Communicator* ranks);
 
 /// Tetrahedra with stress, damage, body, material and fragment; softened and broken joints as
 /// triangles with mode, damage, time of break, opening and slip.

@@ -49,6 +49,9 @@ class Method {
   /// for steps that another method takes together with this one's.
   /// @param more  of each servo, what it touches of the other method; empty: nothing
   virtual void steer(const std::vector<ServoReading>& /*more*/) {}
+  /// Around steps that another method takes together with this one's, on ranks: all at once.
+  virtual void begin_steps() {}
+  virtual void end_steps() {}
   virtual std::int64_t steps() const = 0;  ///< done so far
   virtual double time() const = 0;         ///< simulated  [s]
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]

@@ -121,9 +121,19 @@ class SharedWorld {
   Advanced advance_to(const StopAt& stop) {
     if (ranks_ == nullptr) return advance(whole_, stop);
     Advanced taken;
-    stale_ = true;  // also of a state with wrong numbers
     at_once(ranks_, [&] { taken = advance_part(stop); });
     return taken;
+  }
+  /// Around steps of a rank's part: ranks share elements out anew where these fared unevenly.
+  void begin_steps() {
+    stale_ = true;  // also of a state with wrong numbers
+    waited_before_ = ranks_->waited();
+    rebalance(*part_);  // before steps: output sees the forces of contacts, which do not migrate
+    part_->domain.pace.resume(*ranks_);
+  }
+  void end_steps() {
+    part_->domain.pace.pause(*ranks_);
+    waited_ += ranks_->waited() - waited_before_;
   }
 
  private:
@@ -137,9 +147,7 @@ class SharedWorld {
   }
   Advanced advance_part(const StopAt& stop) {
     World& w = *part_;
-    const double waited_before = ranks_->waited();
-    rebalance(w);  // before steps: output sees the forces of contacts, which do not migrate
-    w.domain.pace.resume(*ranks_);
+    begin_steps();
     Advanced taken;
     do {
       const Advanced more = advance(w, stop);
@@ -147,8 +155,7 @@ class SharedWorld {
       taken.dt_max = std::max(taken.dt_max, more.dt_max);
       taken.steps += more.steps;
     } while (w.step < stop.step && w.time < stop.time);
-    w.domain.pace.pause(*ranks_);
-    waited_ += ranks_->waited() - waited_before;
+    end_steps();
     return taken;
   }
   void share() {
@@ -168,7 +175,8 @@ class SharedWorld {
   std::optional<World> part_;
   bool stale_ = false;
   DomainFacts facts_;
-  double waited_ = 0.0;  ///< for other ranks, in steps  [s]
+  double waited_ = 0.0;         ///< for other ranks, in steps  [s]
+  double waited_before_ = 0.0;  ///< when the present ones began  [s]
 };
 
 }  // namespace breccia

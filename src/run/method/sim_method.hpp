@@ -92,6 +92,8 @@ class SimMethod final : public Method {
     if (all && now_.gravity.is_table()) change_gravity();
     if (all && !lagging_.empty()) lagging_.look(read_now(lagging_.configs()), time());
   }
+  void begin_steps() override { world_.begin_steps(); }
+  void end_steps() override { world_.end_steps(); }
   std::int64_t steps() const override { return world_.part().step; }
   double time() const override { return world_.part().time; }
   double time_step() const override {
@@ -207,7 +209,10 @@ class SimMethod final : public Method {
 
   Frame frame() override {
     look_at_places();
-    return world_.of_whole([](World& w) { return Sim::frame(w, nullptr).frame; });
+    return world_.of_whole([](World& w) {
+      if (!w.servos.empty()) place_servos(w);  // parts steer them, and velocities are of a step
+      return Sim::frame(w, nullptr).frame;
+    });
   }
   FrameOutput frame_output(const FrameWish& wish) override {
     look_at_places();

@@ -34,7 +34,7 @@ struct Scene {
   Vec3 gravity{};
   double max_step = 1.0, safety = 0.7;
 
-  std::unique_ptr<Both> world(int threads = 1, Space space = Space::host) const {
+  Config config() const {
     Config config;
     static_cast<dem::Config&>(config.spheres) = balls.config;
     static_cast<fdem3::Config&>(config.tetrahedra) = solids.config;
@@ -43,10 +43,14 @@ struct Scene {
     config.gravity = gravity;
     config.time.max_step = max_step;
     config.time.safety = safety;
+    return config;
+  }
+  std::unique_ptr<Both> world(int threads = 1, Space space = Space::host) const {
+    const Config whole = config();
     Exec exec;
     exec.threads = threads;
     exec.space = space;
-    return std::make_unique<Both>(config, parts_of(config), balls.model, solids.model, exec);
+    return std::make_unique<Both>(whole, parts_of(whole), balls.model, solids.model, exec);
   }
 };
 
