@@ -2,6 +2,7 @@
 
 #include "coupled/border.hpp"
 
+#include "coupled/sorted_keys.hpp"
 #include "coupled/world.hpp"
 #include "domain/together.hpp"
 #include "exec/for_each.hpp"
@@ -12,14 +13,7 @@ namespace {
 
 /// Place of a number in an ascending list, -1: it is not there.
 BR_HD Index place_in(const View<const Index>& sorted, Index number) {
-  Index first = 0, last = sorted.size;
-  while (first < last) {
-    const Index middle = first + (last - first) / 2;
-    if (sorted[middle] < number)
-      first = middle + 1;
-    else
-      last = middle;
-  }
+  const Index first = first_from(sorted.size, number, [&sorted](Index i) { return sorted[i]; });
   return first < sorted.size && sorted[first] == number ? first : -1;
 }
 

@@ -17,6 +17,7 @@
 #include "run/method/lagging_probes.hpp"
 #include "run/method/method.hpp"
 #include "run/method/shared_world.hpp"
+#include "run/method/stored.hpp"
 
 namespace breccia {
 
@@ -300,36 +301,6 @@ class SimMethod final : public Method {
     world_.forget_timers();
   }
 
-  struct Saving {
-    CheckpointWriter& to;
-    template <class T>
-    void operator()(const std::string& name, const T& value) const {
-      to.value(name, value);
-    }
-    template <class T>
-    void where_kept(const std::string& name, const T& value) const {
-      to.value(name, value);
-    }
-    template <class State>
-    void fields(const char* prefix, State&& state) const {
-      to.fields(prefix, state);
-    }
-  };
-  struct Loading {
-    const CheckpointReader& from;
-    template <class T>
-    void operator()(const std::string& name, T& value) const {
-      value = from.value<T>(name);
-    }
-    template <class T>
-    void where_kept(const std::string& name, T& value) const {
-      if (from.has(name)) value = from.value<T>(name);
-    }
-    template <class State>
-    void fields(const char* prefix, State&& state) const {
-      from.fields(prefix, state);
-    }
-  };
   template <class Model>
   static World made(const Config& config, const Model& model, const Exec& where) {
     World w = Sim::made(config_at(config, {}), model, where);
