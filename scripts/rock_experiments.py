@@ -8,6 +8,7 @@ granite     plate of 50 x 100 mm of granite-lac-du-bonnet of `breccia materials`
             on meshes 1 to 8: meshes from 9 on here
 hwangdeung  plate and disc of `breccia test` with the joints that HOSS has for Hwangdeung granite
 wings       cases/wing_crack on meshes of five edges: first broken joint and strength
+guo         the disc of 40 mm of Guo 2014 between platens, concrete: stress at the first broken joint, and the largest
 
 Cases and results are in out/rock_experiments/; called again, only what is missing is run.
 """
@@ -30,6 +31,7 @@ GRANITE = [{"pressure": p} for p in (0, 20, 40)]
 WINGS = [{"edge": edge} for edge in ("0.68", "0.70", "0.72", "0.85", "1.0")]  # mm
 HWANGDEUNG = {"plate": 209.0, "disc": 9.2}  # measured, MPa
 HOSS = {"plate": 212.1, "disc": 9.9}
+GUO, GUO_DISC = 1.96, 20e-3  # computed by Guo, MPa; radius  [m]
 
 LDB = 'use = "granite-lac-du-bonnet"'
 # E, nu, density, angle, cohesion and tension as published; energies by K_Ic = f_t / 6.88 (Zhang 2002), as those of the granites of `breccia materials`
@@ -38,6 +40,19 @@ young = "55 GPa"
 poisson = 0.15
 friction = 0.6
 joint = { tension = "9.2 MPa", cohesion = "55.4 MPa", friction_angle = "35 deg", energy_open = 32.0, energy_slide = 160.0 }"""
+
+GUO_CONCRETE = """density = 2340.0
+young = "26 GPa"
+poisson = 0.2
+joint = { tension = "3 MPa", cohesion = "15 MPa", friction_angle = "30 deg", energy_open = 50.0, energy_slide = 50.0 }"""
+PLATENS = """
+[material.platen]
+density = 7850.0
+young = "200 GPa"
+poisson = 0.3
+joints = "none"
+friction = 0.1
+"""
 
 HEAD = """breccia = 1
 method = "fdem2d"
@@ -107,7 +122,19 @@ def disc(seed, rock, tension, young):
     return text + ENDS.format(y=f"{depth - 1e-3 * DISC:.9g}", v=RATE / 4 * DISC, ramp=5e-5) + PROBES
 
 
+def between_platens(seed, setting):
+    """The disc of Guo: flat platens of steel approach at 50 mm/s, 3,000 triangles at 1 mm."""
+    text = HEAD.format(seed=seed, rock=GUO_CONCRETE, end="2.5e-3") + PLATENS
+    text += f'\n[[body]]\nname = "disc"\nshape = "disc"\nmaterial = "rock"\nradius = {GUO_DISC}\nmesh_size = {setting["edge"] * 1e-3 * (1 + 0.01 * ((seed + 2) % 5 - 2)):.6g}\njitter = 0.1\n'
+    for name, sense in (("top", 1), ("bottom", -1)):
+        text += f'\n[[body]]\nname = "{name}"\nshape = "plate"\nmaterial = "platen"\ncenter = [0.0, {sense * (GUO_DISC + 1.551e-3)}]\nsize = [0.012, 0.0031]\nmesh_size = 0.001\nstructured = true\n'
+        text += f'\n[[support]]\nname = "press_{name}"\non = "{name}"\nvelocity = [0.0, {-0.025 * sense}]\nramp = 5e-5\n'
+    return text + "".join(f'\n[[probe]]\nname = "force_{name}"\non = "press_{name}"\nquantity = "force_y"\nreduce = "sum"\n' for name in ("top", "bottom"))
+
+
 def case(test, setting, seed):
+    if test == "guo":
+        return between_platens(seed, setting)
     if test == "wings":
         text = (ROOT / "cases/wing_crack/case.toml").read_text()
         return text.replace('mesh_size = "0.7 mm"', f'mesh_size = "{setting["edge"]} mm"', 1).replace("frames = 34", "frames = 0")
@@ -117,7 +144,7 @@ def case(test, setting, seed):
     return plate(seed, HD, 0, 225.0, 52e3) if setting["specimen"] == "plate" else disc(seed, HD, 9.2, 55e3)
 
 
-TESTS = {"granite": (GRANITE, 9), "hwangdeung": ([{"specimen": s} for s in HWANGDEUNG], 1), "wings": (WINGS, 1)}  # settings, first seed
+TESTS = {"granite": (GRANITE, 9), "hwangdeung": ([{"specimen": s} for s in HWANGDEUNG], 1), "wings": (WINGS, 1), "guo": ([{"edge": e} for e in (1.4, 1.0, 0.7)], 1)}  # settings, first seed
 RECORD = ["test", "setting", "seed", "commit", "device", "hash", "seconds", "quantity", "value"]
 
 
@@ -137,6 +164,12 @@ def measured(test, setting, folder):
     if setting.get("specimen") == "disc":
         force = max(0.5 * abs(r["force_top"] - r["force_bottom"]) for r in rows_of(folder))
         return {"strength": 1e-6 * force / (math.pi * DISC)}
+    if test == "guo":
+        rows, summary = rows_of(folder), json.loads((folder / "summary.json").read_text())
+        stress = [(r["time"], 0.5e-6 * (abs(r["force_top"]) + abs(r["force_bottom"])) / (math.pi * GUO_DISC)) for r in rows]
+        first = summary["fracture"].get("first_break")
+        return {"first": min(stress, key=lambda s: abs(s[0] - first))[1] if first and first > 0 else math.nan, "strength": max(s for _, s in stress), "end": stress[-1][1],
+                "broken": summary["fracture"].get("broken_joints", math.nan)}
     if test == "wings":
         first = json.loads((folder / "summary.json").read_text())["fracture"]["first_break"]
         stress = [(r["time"], 0.5e-6 * (abs(r["force_top"]) + abs(r["force_bottom"])) / WIDTH) for r in rows_of(folder)]

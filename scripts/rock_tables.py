@@ -20,8 +20,10 @@ import statistics
 import subprocess
 import sys
 import time
+import tomllib
 
-CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+CASES, MATERIALS = ROOT / "cases", ROOT / "src/io/case/materials.toml"
 SEEDS = (1, 2, 3)
 RECORD = ["table", "setting", "run", "commit", "device", "hash", "seconds"]
 
@@ -115,16 +117,32 @@ def front_energy(r):
     return front, reached - CRACK_START
 
 
+def slope(r):
+    """Fracture energy over growth while the crack runs from 5 to 35 mm ahead of its notch, least squares, J/m2."""
+    front, growth = front_energy(r)
+    return statistics.linear_regression(*zip(*[(x, f) for x, f in front if 5e-3 < x < 35e-3])).slope, growth
+
+
 def crack(r, setting):
     """The slope of fracture energy over growth, least squares from 5 to 35 mm ahead of the notch, is the energy of the crack with the
     rock that softens beside it; the zone that softens ahead moves along and does not count."""
-    front, growth = front_energy(r)
-    grown = [(x, f) for x, f in front if 5e-3 < x < 35e-3]
+    energy, growth = slope(r)
     return {
-        "fracture energy of growth / (G_I A)": statistics.linear_regression(*zip(*grown)).slope / CRACK_ENERGY,
+        "fracture energy of growth / (G_I A)": energy / CRACK_ENERGY,
         "length of the path / growth": sum(math.dist(*ends(c)) for c in r.cracks()) / growth,
         "grown, mm": 1e3 * growth,
         "largest force, kN/m": 1e-3 * r.strongest("force"),
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def energy(r, setting):
+    """What a crack through a rock of the library takes, over what its joints ask for."""
+    shown, growth = slope(r)
+    return {
+        "shown, J/m2": shown,
+        "over G_I": shown / setting["G_I, J/m2"],
+        "grown, mm": 1e3 * growth,
         "ledger error": r.value("energy.error_relative"),
     }
 
@@ -274,6 +292,20 @@ def crack_runs():
             yield setting, {**sets, "joints.criterion": criterion}
 
 
+def energy_runs():
+    """Rocks of `breccia materials` in cases/crack_growth, with the edges of their plates of 600, 1,200, 2,400 and 4,800 triangles; the mouth opens as fast as their f_t / E asks for."""
+    rocks = {name: of for name, of in tomllib.loads(MATERIALS.read_text()).items() if "brazilian" in of["target"]}
+    for edges in ((4.4e-3, 3.1e-3, 2.2e-3), (1.55e-3,)):
+        for name, rock in rocks.items():
+            joint = rock["fdem2d"]["joint"]
+            young, strength = (float(text.split()[0]) * {"GPa": 1e9, "MPa": 1e6}[text.split()[1]] for text in (rock["fdem2d"]["young"], joint["tension"]))
+            speed = 20e-3 * strength / young / (3e6 / 30e9)
+            for setting, sets in over_meshes("plate", edges):
+                yield ({"rock": name, "G_I, J/m2": joint["energy_open"], **setting},
+                       {**sets, "material.rock.use": name, "material.rock.damping": 0.3,
+                        "support.upper.velocity": f"[0.0, {speed:.4g}]", "support.lower.velocity": f"[0.0, {-speed:.4g}]"})
+
+
 def disc_runs():
     for energy, edges in ((4.0, (2e-3, 1.4e-3, 1e-3)), (1.0, (1e-3,)), (16.0, (1.4e-3,))):
         for setting, sets in over_meshes("disc", edges):
@@ -300,6 +332,7 @@ def dominoes_runs():
 CAMPAIGNS = {  # name: case, runs, quantities
     "tension": ("tension_free_mesh", tension_runs, tension),
     "crack": ("crack_growth", crack_runs, crack),
+    "energy": ("crack_growth", energy_runs, energy),
     "disc": ("homogeneous_disc", disc_runs, disc),
     "kalthoff": ("kalthoff", lambda: over_meshes("plate", (2e-3, 1.4e-3, 1e-3)), kalthoff),
     "branching": ("branching", lambda: over_meshes("plate", (1.25e-3, 1e-3, 0.7e-3)), branching),

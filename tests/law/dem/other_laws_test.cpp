@@ -12,6 +12,7 @@
 #include "dem/setup/restitution.hpp"
 #include "math/constants.hpp"
 #include "pair_driver.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia::dem {
 namespace other_laws_test {
@@ -94,6 +95,46 @@ TEST(SteelLink, it_ruptures_at_its_failure_strain_and_then_only_bears_compressio
   EXPECT_EQ(steel.response(length, radius, pair.move_b({}), state).normal, 0.0);
   pair.b.position.x = 0.99 * length;
   EXPECT_LT(steel.response(length, radius, pair.move_b({}), state).normal, 0.0);
+}
+
+/// EN 1992-1-1, annex C: B500B bears 1.08 times its yield stress at 5 %; EN 10025-2: S355 470 MPa
+/// at 22 %.
+TEST(SteelLink, of_the_library_yields_hardens_and_ruptures_as_its_source_says) {
+  struct Source {
+    const char* name;
+    double young, yield, strength, strain;
+  };
+  for (const Source& source : {Source{"B500B", 200e9, 500e6, 1.08 * 500e6, 0.05},
+                               Source{"S355", 210e9, 355e6, 470e6, 0.22}}) {
+    const CaseText text{std::string("breccia = 1\nmethod = \"dem3d\"\n[time]\nend = 1.0\n"
+                                    "[material.m]\nuse = \"") +
+                            source.name + "\"\n",
+                        "case.toml"};
+    const SteelLink link = steel_law(read_case<Config>(text, {}).materials[0]);
+    SteelState state{};
+    Pair pair;
+    double before = 0.0, largest = 0.0, at = 0.0, kink = 0.0;
+    constexpr double each = 1e-5;  // of strain
+    for (int i = 1; state.hardening != steel_ruptured && i < 40'000; ++i) {
+      const double stress =
+          link.response(length, radius, pair.move_b({each * length / pair.dt, 0.0, 0.0}), state)
+              .normal /
+          area;
+      if (i == 50) {
+        EXPECT_NEAR(stress, source.young * 50 * each, 1e-6 * stress) << source.name;
+      }
+      if (kink == 0.0 && stress - before < 0.5 * source.young * each) kink = before;
+      if (stress > largest) {
+        largest = stress;
+        at = i * each;
+      }
+      before = stress;
+    }
+    EXPECT_EQ(state.hardening, steel_ruptured) << source.name;
+    EXPECT_NEAR(kink, source.yield, source.young * each) << source.name;
+    EXPECT_NEAR(largest, source.strength, 0.005 * source.strength) << source.name;
+    EXPECT_NEAR(at, source.strain, 0.06 * source.strain) << source.name;
+  }
 }
 
 TEST(SteelLink, a_plastic_hinge_limits_the_bending_moment) {
