@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/on_host.hpp"
 #include "core/set_up.hpp"
 #include "core/world_space.hpp"
 #include "dem/free_walls.hpp"
@@ -446,6 +447,38 @@ void set_linked_pairs(World& w) {
 
 namespace {
 
+/// Says which walls elements reach into before anything moves, and what that is worth.
+void tell_overlaps(const World& w, const Config& config, std::vector<std::string>& warnings) {
+  constexpr double little = 0.01;  // of a radius
+  const OnHost element(w.wall_contacts.pairs.a, w.exec.space);
+  const OnHost wall(w.wall_contacts.pairs.b, w.exec.space);
+  const OnHost contact(w.wall_contacts.history.state, w.exec.space);
+  const OnHost push(w.wall_contacts.history.on_wall, w.exec.space);
+  const OnHost state(w.elements.state, w.exec.space);
+  struct Overlaps {
+    Index elements = 0;
+    double deepest = 0.0, share = 0.0;  //  [m], of a radius  [-]
+    Vec3 force;                         //  [N]
+  };
+  std::vector<Overlaps> of(config.walls.size());
+  for (Index i = 0; i < w.wall_contacts.size(); ++i) {
+    const double overlap = contact->data()[i].overlap;
+    if (!(overlap > 0.0)) continue;
+    Overlaps& own = of[at(wall->data()[i])];
+    ++own.elements;
+    own.deepest = std::max(own.deepest, overlap);
+    own.share = std::max(own.share, overlap / state->data()[element->data()[i]].radius);
+    own.force += push->data()[i];
+  }
+  for (std::size_t k = 0; k < of.size(); ++k)
+    if (of[k].share > little)
+      warnings.push_back(fmt::format(
+          "wall.{}: at the start {} elements reach into it, by up to {:.3g} mm ({:.0f} % of a "
+          "radius), and press with {:.3g} N; is that not meant, move it back by as much",
+          config.walls[k].name, of[k].elements, 1e3 * of[k].deepest, 100.0 * of[k].share,
+          norm(of[k].force)));
+}
+
 World made(const Config& config, const Model& model, const Exec& exec) {
   if (model.size() == 0) throw InputError("the case has no elements");
   World w(exec);
@@ -480,6 +513,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   evaluate_forces(w);
   const EnergyBalance start = balance(w);
   w.ledger.start = start.kinetic + start.elastic;
+  tell_overlaps(w, config, given.warnings);
   return w;
 }
 
