@@ -158,11 +158,70 @@ std::vector<Problem> lost_names(const Source& source, const std::vector<std::str
   return lost;
 }
 
+/// Tables that a method lacks, and what it has in their place (docs/stages.md).
+struct Instead {
+  const char *method, *table, *sentence;
+};
+constexpr Instead instead[] = {
+    {"dem3d", "load",
+     "spheres have no faces: walls and supports with a servo press, `force` of a [[support]] acts "
+     "on elements, `absorb` takes waves up"},
+    {"dem3d", "in_situ", "a packing is put under stress by servos, in a first stage"},
+    {"dem3d", "bolt", "bars with bond are bodies of shape \"rebar\""},
+    {"dem3d", "joint_set", "[[body.cut]] parts links, one cut at a time"},
+    {"dem3d", "discontinuity", "[[body.cut]] parts links"},
+    {"fdem2d", "wall", "a body that a [[support]] holds as a whole is rigid"},
+    {"fdem3d", "wall", "a body that a [[support]] holds as a whole is rigid"},
+    {"fdem3d", "bolt", "bars are of spheres, in a case of both methods"},
+    {"fdem3d", "contact", "faces of tetrahedra lose energy by friction and `damping`"},
+};
+
+/// Whether a key is one of a method, by the first and last words of its path.
+bool has_key(const std::vector<KeyInfo>& keys, const std::string& path) {
+  const auto words = [](const std::string& of) {
+    return std::pair(of.substr(0, of.find_first_of(".[")), of.substr(of.rfind('.') + 1));
+  };
+  const auto [first, last] = words(path);
+  return std::any_of(keys.begin(), keys.end(), [&](const KeyInfo& key) {
+    const auto [table, word] = words(key.path);
+    return table == first && (first == path || word == last);
+  });
+}
+
+/// Of an unknown key that other methods have: which, and what this one has in its place.
+Problem told_of_others(Problem problem, const std::string& method) {
+  static const std::string unknown = " is not a key";
+  const std::size_t end = problem.text.find(unknown);
+  const std::string path = problem.text.substr(0, end);
+  if (end == std::string::npos || path.find_first_of(" =\"") != std::string::npos) return problem;
+  std::vector<std::string> others;
+  const auto ask = [&](const char* other, const std::vector<KeyInfo>& keys) {
+    if (other != method && has_key(keys, path)) others.emplace_back(other);
+  };
+  ask("dem3d", list_keys<dem::Config>(""));
+  ask("fdem2d", list_keys<fdem::Config>(""));
+  ask("fdem3d", list_keys<fdem3::Config>(""));
+  if (others.empty()) return problem;
+  problem.correction.reset();
+  problem.text = fmt::format("{}{} of {}; {} {} it", path, unknown, method,
+                             fmt::join(others, " and "), others.size() > 1 ? "have" : "has");
+  for (const Instead& i : instead)
+    if (method == i.method && path == i.table) problem.text += fmt::format("\n    {}", i.sentence);
+  return problem;
+}
+
 template <class Config, class Source>
 Config read_all(const Source& source, const std::vector<std::string>& overrides) {
   try {
     return read_case<Config>(source, overrides);
-  } catch (const CaseError& error) {
+  } catch (CaseError& error) {
+    if constexpr (!std::is_same_v<Config, coupled::Config>) {
+      std::vector<Problem> told = error.problems;
+      for (Problem& problem : told)
+        problem = told_of_others(std::move(problem), case_method(source, overrides));
+      const CaseText& text = text_of(source);
+      error = CaseError(std::move(told), text.origin, text.text);
+    }
     if (std::any_of(error.problems.begin(), error.problems.end(),
                     [](const Problem& problem) { return takes_a_name(problem.text); }))
       throw;

@@ -7,6 +7,7 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
+#include "io/case/problems.hpp"
 #include "io/whole_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
@@ -438,6 +439,36 @@ name = "far"
       told(changed(whole, "[[stage.wall]]\nname = \"far\"", "[[stage.wall]]\nname = \"near\""));
   EXPECT_EQ(lost.exit_code, 2);
   EXPECT_TRUE(has(lost.text, "line 31, stage.only.wall.name = \"near\" is no wall")) << lost.text;
+}
+
+/// A table of another method is no slip of the pen: which method has it, what this one has instead,
+/// and nothing that --fix would write in its place.
+TEST(CheckCommand, tells_which_methods_have_a_key) {
+  const auto told = [](const char* method, const char* text) {
+    const CaseText source{fmt::format("breccia = 1\nmethod = \"{}\"\n{}", method, text), "a.toml"};
+    try {
+      case_of_text(source.text, source.origin, ".", {});
+    } catch (const CaseError& error) {
+      for (const Problem& problem : error.problems)
+        if (problem.text.find("is not a key") != std::string::npos) {
+          EXPECT_EQ(problem.line, 3U);
+          return problem.text + (problem.correction ? " (corrected)" : "");
+        }
+    }
+    return std::string();
+  };
+  EXPECT_EQ(
+      told("dem3d", "[[load]]\nname = \"a\"\n"),
+      "load is not a key of dem3d; fdem2d and fdem3d have it\n    spheres have no faces: walls "
+      "and supports with a servo press, `force` of a [[support]] acts on elements, `absorb` "
+      "takes waves up");
+  EXPECT_EQ(
+      told("fdem3d", "[[bolt]]\nname = \"a\"\n"),
+      "bolt is not a key of fdem3d; fdem2d has it\n    bars are of spheres, in a case of both "
+      "methods");
+  EXPECT_EQ(told("fdem2d", "links.range = 1.4\n"), "links is not a key of fdem2d; dem3d has it");
+  EXPECT_EQ(told("dem3d", "[[bodi]]\nname = \"a\"\n"),
+            "bodi is not a key; did you mean body? (corrected)");
 }
 
 }  // namespace check_command_test
