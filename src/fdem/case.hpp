@@ -16,12 +16,12 @@
 #include "exec/buffer.hpp"
 #include "fdem/bolts/bolts.hpp"
 #include "fdem/contact/couples.hpp"
-#include "fdem/fluid/spreading.hpp"
 #include "fdem/laws/explosive.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/triangles/loads.hpp"
 #include "fdem/triangles/motion.hpp"
+#include "fdem_shared/fluid/given.hpp"
 
 namespace breccia::fdem {
 
@@ -31,11 +31,8 @@ struct NodeSet {
   std::vector<Index> nodes;  ///< 3 triangle + corner, ascending, in the whole mesh  [-]
 };
 
-/// Where a fluid comes from, and how it spreads.
-struct FluidSource {
-  std::int16_t load;            ///< index into Case::loads
-  double speed;                 ///< of its front; 0: it fills cracks at once  [m/s]
-  std::vector<Index> vertices;  ///< at which it is from the start on  [-]
+/// Of a fluid; its ports are vertices.
+struct FluidSource : fdem_shared::FluidSource {
   /// Of an explosive: border edges around each hole, and what bears its pressure there; else empty.
   std::vector<std::vector<Index>> holes{};
   std::vector<LoadedEdge> borders{};
@@ -43,22 +40,8 @@ struct FluidSource {
   double charge = 0.0;  ///< volume of the explosive per thickness  [m2]
 };
 
-/// A fluid that flows through cracks.
-struct FlowCase {
-  bool on = false;
-  double viscosity = 0.0, bulk = 0.0;  ///<  [Pa s], [Pa]
-  double aperture = 0.0;               ///< of closed cracks  [m]
-  double stiffness = 0.0;              ///< of joints times length: what may act on a crack  [Pa]
-  bool filled = false;                 ///< cracks that are open at the start hold it
-  bool by_rate = false;                ///< stage
-  ScaledAmplitude input;               ///< stage; pressure  [Pa], or rate  [m2/s]
-  std::int16_t load = 0;               ///< index into Case::loads
-  Index triangles = 0;                 ///< of the whole mesh  [-]
-  std::vector<Index> vertices;         ///< of its source, ascending  [-]
-  std::vector<Index> outlet;           ///< likewise, where it leaves; empty: nowhere  [-]
-  double outlet_pressure = 0.0;        ///<  [Pa]
-  std::vector<LoadedEdge> borders;     ///< of the region: they bear the pressure of the source
-};
+using FlowCase = fdem_shared::FlowCaseOf<LoadedEdge>;
+using CrackSide = fdem_shared::LineCrack;
 
 struct Case {
   TimeConfig time;

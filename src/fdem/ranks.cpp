@@ -1,38 +1,22 @@
 #include "fdem/ranks.hpp"
 
 #include "fdem/fluid/cavity.hpp"
+#include "fdem/fluid/fluid.hpp"
 #include "fdem/relations.hpp"
+#include "fdem_shared/fluid/ranks.hpp"
 #include "fdem_shared/migration.hpp"
 
 namespace breccia::fdem {
 
-namespace {
-
-/// The items of an array that all ranks have with one length, as rank 0 has them.
-template <class Item>
-void take_items(Communicator& ranks, Buffer<Item>& items) {
-  Message message;
-  put_bytes(message, reinterpret_cast<const std::uint8_t*>(items.data()),
-            at(items.size()) * sizeof(Item));
-  message = ranks.from_first(std::move(message));
-  __builtin_memcpy(items.data(), message.data(), message.size());
-}
-
-}  // namespace
+using fdem_shared::take_items;
 
 void Shape::take_common(World& w, Communicator& ranks) {
-  take_from_first(ranks, w.fluid.time);
+  fdem_shared::take_fluid(ranks, *w.given, w.fluid);
   if (!w.given->bolts.empty()) {
     take_from_first(ranks, w.bolts.time);
     take_items(ranks, w.bolts.nodes);
   }
   if (has_gas(w)) take_items(ranks, w.fluid.gas);
-  if (!w.given->flow.on) return;
-  take_from_first(ranks, w.fluid.injected);
-  take_from_first(ranks, w.fluid.released);
-  take_from_first(ranks, w.fluid.pressure);
-  BR_ASSERT(w.fluid.volume.size() > 0);
-  take_items(ranks, w.fluid.volume);
 }
 
 void Shape::derive_part(World& w, Space space) {
@@ -46,7 +30,7 @@ void Shape::derive_part(World& w, Space space) {
     w.stress.resize(w.triangles.size());
     w.overshoot.resize(joints);
   }
-  list_loaded_edges(w);
+  list_loaded(w);
   w.joint_packs.clear();
   if (space != Space::host) return;
   w.joint_packs.assign(at((joints + joint_pack - 1) / joint_pack), JointPack::inner);

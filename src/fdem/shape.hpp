@@ -2,8 +2,8 @@
 // Triangles, joined along edges, by the words of fdem_shared/shape.hpp.
 
 #include "core/region.hpp"
-#include "fdem/fluid/fluid.hpp"
 #include "fdem/world.hpp"
+#include "fdem_shared/fluid/flow.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem {
@@ -29,13 +29,16 @@ struct Shape {
   using Reference = Mat2;  ///< of an element at the start
   using Sides = EdgeJoints;
   using Dashpots = EdgeDashpots;
+  using LoadedSide = LoadedEdge;
+  using Crack = CrackSide;
+  using FlowCell = fdem_shared::LineCell;
   static constexpr int dimension = 2;
   static constexpr Index corners = 3;
   static constexpr Index side_free = edge_free, side_bonded = edge_bonded;
   static constexpr const char *element = "triangle", *size_word = "area";
   static constexpr const char *elements_word = "triangles", *force_unit = "N/m";
   static constexpr const char *side_a_word = "edge_a", *side_b_word = "edge_b";
-  static constexpr const char* absorbing_sides = "absorbing edges";
+  static constexpr const char *absorbing_sides = "absorbing edges", *port_words = "vertices";
 
   // Members by the names that both methods share; of a constant world they are constant.
   template <class World>

@@ -28,16 +28,7 @@ using fdem_shared::ExposedVertices;
 using fdem_shared::WholeMesh;
 
 /// Where fluid presses on cracks: the same on all ranks.
-struct FluidState {
-  double time = -1.0;           ///< when it spread last; below 0: not yet  [s]
-  std::vector<LoadedEdge> wet;  ///< sides of cracks, two by two, by global id
-  /// Of a fluid that flows, at the first edge of each crack: its volume without pressure; none: it
-  /// has not begun.  [m2]  (3 triangles of the whole mesh)
-  Buffer<double> volume;
-  double injected = 0.0;  ///< that came in so far  [m2]
-  double released = 0.0;  ///< that left so far  [m2]
-  double pressure = 0.0;  ///< at its source  [Pa]
-  double length = 0.0;    ///< of cracks that a fluid that flows fills  [m]
+struct FluidState : fdem_shared::FluidStateOf<LoadedEdge, CrackSide> {
   /// Factors of the loads' pressures: of explosives the pressure of the gas  [Pa], else 1; empty:
   /// there are none.  (sources)
   Buffer<double> gas;

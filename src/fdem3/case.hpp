@@ -14,6 +14,7 @@
 #include "fdem3/elements/loads.hpp"
 #include "fdem3/elements/motion.hpp"
 #include "fdem3/setup/config.hpp"
+#include "fdem_shared/fluid/given.hpp"
 
 namespace breccia::fdem3 {
 
@@ -30,10 +31,11 @@ struct EffectiveRock {
   double fast, slow;      ///< waves of pressure and of shear  [m/s]
 };
 
+/// Of a fluid; its ports are edges.
+using FluidSource = fdem_shared::FluidSource;
+using FlowCase = fdem_shared::FlowCaseOf<LoadedFace>;
 /// Two faces on each other that nothing joins, by global number.
-struct OpenFaces {
-  Index a, b;
-};
+using CrackSide = fdem_shared::FaceCrack;
 
 struct Case {
   TimeConfig time;
@@ -58,14 +60,16 @@ struct Case {
   std::vector<LoadLaw> loads;                 ///< stage: sizes; all factors 1  (loads)
   std::vector<std::string> load_names;        ///<  (loads)
   std::vector<AmplitudeOf3> load_amplitudes;  ///< stage: factors over time  (loads)
-  std::vector<LoadedFace> loaded;             ///< by global id, ascending
-  std::vector<OpenFaces> open_cracks;         ///< faces of discontinuities open from the start
-  Buffer<ElasticTetrahedron> laws;            ///< stage  (materials; where stress in situ has a
-                                              ///< slope: tetrahedra of the whole mesh)
-  std::vector<Index> materials_of;            ///< likewise, else empty  (tetrahedra of the whole
-                                              ///< mesh)
-  std::vector<Vec3> middles;                  ///< likewise, at the start  [m]
-  Buffer<JointBond> bonds;                    ///< stage; indexed by Joints::law  (laws of joints)
+  std::vector<LoadedFace> loaded;             ///< by global id, ascending; without cracks
+  std::vector<FluidSource> fluids;            ///< empty: no load is a fluid
+  FlowCase flow;
+  std::vector<CrackSide> open_cracks;  ///< faces of discontinuities open from the start
+  Buffer<ElasticTetrahedron> laws;     ///< stage  (materials; where stress in situ has a
+                                       ///< slope: tetrahedra of the whole mesh)
+  std::vector<Index> materials_of;     ///< likewise, else empty  (tetrahedra of the whole
+                                       ///< mesh)
+  std::vector<Vec3> middles;           ///< likewise, at the start  [m]
+  Buffer<JointBond> bonds;             ///< stage; indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Tetrahedra::hold
   /// Each vertex of the mesh: bit 0: at the border or a face that nothing joins, bit 1 such a face

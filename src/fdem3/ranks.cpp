@@ -1,16 +1,22 @@
 #include "fdem3/ranks.hpp"
 
+#include "fdem3/fluid/fluid.hpp"
 #include "fdem3/relations.hpp"
+#include "fdem_shared/fluid/ranks.hpp"
 #include "fdem_shared/migration.hpp"
 
 namespace breccia::fdem3 {
+
+void Shape::take_common(World& w, Communicator& ranks) {
+  fdem_shared::take_fluid(ranks, *w.given, w.fluid);
+}
 
 void Shape::derive_part(World& w, Space) {
   if (w.given->extrinsic) {
     w.stress.resize(w.tetrahedra.size());
     w.overshoot.resize(w.joints.size());
   }
-  list_loaded_faces(w);
+  list_loaded(w);
 }
 
 }  // namespace breccia::fdem3

@@ -3,6 +3,7 @@
 
 #include "core/region.hpp"
 #include "fdem3/world.hpp"
+#include "fdem_shared/fluid/flow.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem3 {
@@ -22,13 +23,16 @@ struct Shape {
   using Reference = ShapeGradients;  ///< of an element at the start
   using Sides = FaceJoints;
   using Dashpots = FaceDashpots;
+  using LoadedSide = LoadedFace;
+  using Crack = CrackSide;
+  using FlowCell = fdem_shared::FaceCell;
   static constexpr int dimension = 3;
   static constexpr Index corners = 4;
   static constexpr Index side_free = face_free, side_bonded = face_bonded;
   static constexpr const char *element = "tetrahedron", *size_word = "volume";
   static constexpr const char *elements_word = "tetrahedra", *force_unit = "N";
   static constexpr const char *side_a_word = "face_a", *side_b_word = "face_b";
-  static constexpr const char* absorbing_sides = "absorbing faces";
+  static constexpr const char *absorbing_sides = "absorbing faces", *port_words = "edges";
 
   // Members by the names that both methods share; of a constant world they are constant.
   template <class World>
@@ -127,8 +131,8 @@ struct Shape {
     w.side_across.clear();
   }
   static void derive_part(World& w, Space);
-  static void take_common(World&, Communicator&) {}
-  static void collect_common(const World&, World&) {}
+  static void take_common(World& w, Communicator& ranks);
+  static void collect_common(const World& part, World& whole) { whole.fluid = part.fluid; }
 
   /// Present size over that at the start, and the square of a length that no corner may cover in a
   /// step.

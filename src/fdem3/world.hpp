@@ -27,6 +27,9 @@ namespace breccia::fdem3 {
 using fdem_shared::ExposedVertices;
 using fdem_shared::WholeMesh;
 
+/// Where fluid presses on cracks: the same on all ranks.
+using FluidState = fdem_shared::FluidStateOf<LoadedFace, CrackSide>;
+
 /// Each line tells meaning and unit, then (length; who writes it), in the words of fdem/world.hpp.
 struct World {
   explicit World(const Exec& how);
@@ -80,6 +83,7 @@ struct World {
   std::int64_t searches = 0;       ///< [-]  (search)
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
+  FluidState fluid;                ///< (fluid: spread_fluid(), every servo_every steps)
 
   // Which part of the whole it is, and how its tetrahedra lie in the mesh: constant between two
   // migrations.
@@ -163,8 +167,6 @@ void step(World& w);
 Advanced advance(World& w, const StopAt& stop);
 /// Velocities of supports at the middle of the step to come, into World::motions.
 void list_motions(World& w);
-/// Loaded faces of this rank's tetrahedra.
-void list_loaded_faces(World& w);
 
 /// Asks all ranks whether couples must be searched for, and hears what they say.
 void ask_ranks_for_search(World& w);

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/gauge.hpp"
-#include "fdem/edges_now.hpp"
 #include "fdem/fluid/fluid.hpp"
-#include "fdem/world.hpp"
+#include "fdem/shape.hpp"
+#include "fdem_shared/sides_now.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -37,13 +37,13 @@ std::vector<NodeNow> nodes_now(World& part) {
       wanted.insert(wanted.end(), {3 * place.triangle, 3 * place.triangle + 1});
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  const std::vector<EdgeNow> edges = edges_now(part, wanted);
+  const std::vector<EdgeNow> edges = fdem_shared::sides_now(part, wanted);
   std::vector<NodeNow> nodes;
   for (const Bolt& bolt : part.given->bolts)
     for (const BoltPlace& place : bolt.places) {
-      const EdgeNow &first = edge_in(edges, 3 * place.triangle),
-                    &second = edge_in(edges, 3 * place.triangle + 1);
-      nodes.emplace_back(place, first.from, first.to, second.to);
+      const EdgeNow &first = side_in(edges, 3 * place.triangle),
+                    &second = side_in(edges, 3 * place.triangle + 1);
+      nodes.emplace_back(place, first.at[0], first.at[1], second.at[1]);
     }
   return nodes;
 }
@@ -166,7 +166,7 @@ void pull_bolts(World& part) {
              });
   part.bolts.time = part.time;
   part.bolts.pull = std::move(pull);
-  list_loaded_edges(part);
+  list_loaded(part);
 }
 
 std::optional<Readings> read_bolt(const World& part, const ProbeConfig& probe) {

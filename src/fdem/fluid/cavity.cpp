@@ -4,7 +4,8 @@
 #include <map>
 
 #include "exec/error.hpp"
-#include "fdem/edges_now.hpp"
+#include "fdem/fluid/fluid.hpp"
+#include "fdem/shape.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -12,12 +13,12 @@ namespace {
 /// Area of a polygon that runs clockwise, as the border of a hole does; where edges have parted, it
 /// runs straight from one to the next.  [m2]
 double area_within(const std::vector<EdgeNow>& edges, const std::vector<Index>& hole) {
-  const Vec2 origin = edge_in(edges, hole.front()).from;
+  const Vec2 origin = side_in(edges, hole.front()).at[0];
   double twice = 0.0;
   for (std::size_t i = 0; i < hole.size(); ++i) {
-    const EdgeNow& e = edge_in(edges, hole[i]);
-    const Vec2 next = edge_in(edges, hole[(i + 1) % hole.size()]).from;
-    twice -= cross(e.from - origin, e.to - origin) + cross(e.to - origin, next - origin);
+    const EdgeNow& e = side_in(edges, hole[i]);
+    const Vec2 next = side_in(edges, hole[(i + 1) % hole.size()]).at[0];
+    twice -= cross(e.at[0] - origin, e.at[1] - origin) + cross(e.at[1] - origin, next - origin);
   }
   return 0.5 * twice;
 }
@@ -65,16 +66,15 @@ double gas_volume(World& part, const FluidSource& source) {
   for (const auto& hole : source.holes) wanted.insert(wanted.end(), hole.begin(), hole.end());
   const std::vector<LoadedEdge>& wet = part.fluid.wet;
   for (const LoadedEdge& side : wet)
-    if (side.load == source.load) wanted.push_back(3 * side.triangle + side.edge);
-  const std::vector<EdgeNow> edges = edges_now(part, wanted);
+    if (side.load == source.load) wanted.push_back(side.number());
+  const std::vector<EdgeNow> edges = fdem_shared::sides_now(part, wanted);
   double volume = 0.0;
   for (const auto& hole : source.holes) volume += area_within(edges, hole);
   for (std::size_t i = 0; i + 1 < wet.size(); i += 2) {
     if (wet[i].load != source.load) continue;
-    const EdgeNow& a = edge_in(edges, 3 * wet[i].triangle + wet[i].edge);
-    const EdgeNow& b = edge_in(edges, 3 * wet[i + 1].triangle + wet[i + 1].edge);
-    const JointOpening<double> o = opening_of(a.from, a.to, b.to, b.from);
-    volume += wet[i].share * o.size * std::max(o.open[1], 0.0);
+    const OpenLine now =
+        opened({}, side_in(edges, wet[i].number()), side_in(edges, wet[i + 1].number()));
+    volume += wet[i].share * now.length * std::max(now.opening, 0.0);
   }
   return volume;
 }

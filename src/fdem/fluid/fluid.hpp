@@ -1,13 +1,24 @@
 #pragma once
-// Fluid in cracks: which edges it presses on, of a world and on ranks.
+// Fluid in cracks of triangles: fdem_shared/fluid/fluid.hpp, and gas.
 
 #include <vector>
 
-#include "domain/domain.hpp"
-#include "fdem/fluid/spreading.hpp"
-#include "fdem/world.hpp"
+#include "fdem/shape.hpp"
+#include "fdem_shared/sides_now.hpp"
 
 namespace breccia::fdem {
+
+using EdgeNow = fdem_shared::SideNow<Shape>;
+
+/// A crack as it is open now.
+struct OpenLine {
+  double length;   ///< of its middle line  [m]
+  double opening;  ///< in its middle  [m]
+  double extent() const { return length; }
+};
+OpenLine opened(const CrackSide& crack, const EdgeNow& a, const EdgeNow& b);
+fdem_shared::LineCell cell_of(const FlowCase& flow, const CrackSide& crack, const OpenLine& now);
+void tell_cracks(World& part, const Buffer<Index>& joints, Buffer<CrackSide>& told);
 
 /// Cracks that are broken or open now, of the whole mesh, by their first edges. All ranks get all.
 std::vector<CrackSide> open_cracks(World& part);
@@ -23,14 +34,10 @@ void restore_fluid(World& part);
 void flow_on(World& part);
 
 /// Lists the loaded edges that are here, those that fluid presses on, too.
-void list_loaded_edges(World& w);
+void list_loaded(World& w);
 
-/// Length that a fluid has filled, and the volume of it, per unit thickness.
-struct FilledPart {
-  double length = 0.0;  ///<  [m]
-  double volume = 0.0;  ///<  [m2]
-};
-/// Of the whole mesh. @param load  index into Config::loads
-FilledPart filled_part(const World& whole, std::size_t load);
+/// Length that a fluid has filled, and the volume of it, per unit thickness, of the whole mesh.
+/// @param load  index into Config::loads
+fdem_shared::FilledPart filled_part(const World& whole, std::size_t load);
 
 }  // namespace breccia::fdem

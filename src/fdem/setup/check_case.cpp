@@ -6,15 +6,10 @@
 #include "fdem/setup/bolts.hpp"
 #include "fdem/setup/case_rules.hpp"
 #include "fdem/setup/stages.hpp"
+#include "fdem_shared/setup/fluid_rules.hpp"
 
 namespace breccia::fdem {
 namespace {
-
-std::string first_flow(const Config& config) {
-  for (const LoadConfig& l : config.loads)
-    if (l.flows()) return l.name;
-  return {};
-}
 
 /// Explosives: gas in holes.
 void check_gas(const Config& config, std::vector<std::string>& problems) {
@@ -40,35 +35,6 @@ void check_gas(const Config& config, std::vector<std::string>& problems) {
   }
 }
 
-/// Fluids that flow, and keys that only they have.
-void check_flows(const Config& config, std::vector<std::string>& problems) {
-  int flows = 0;
-  for (const LoadConfig& l : config.loads) {
-    const std::string where = "load." + l.name;
-    const bool has_rate = l.rate.is_table() || l.rate.value != 0.0;
-    const bool has_pressure = l.pressure.is_table() || l.pressure.value != 0.0;
-    if (l.viscosity > 0.0 && l.kind != "fluid")
-      problems.push_back(where + ".viscosity: only a fluid has one; kind is \"" + l.kind + "\"");
-    if (has_rate && !l.flows())
-      problems.push_back(where + ".rate: needs kind = \"fluid\" and a viscosity above 0");
-    if (!l.outlets.empty() && !l.flows())
-      problems.push_back(where + ".outlet: needs kind = \"fluid\" and a viscosity above 0");
-    if (l.outlets.size() > 1) problems.push_back(where + ".outlet: one at most");
-    if (!l.flows()) continue;
-    if (has_rate && has_pressure)
-      problems.push_back(where + ": give a rate or a pressure; a fluid takes one of them");
-    if (l.speed > 0.0)
-      problems.push_back(where + ".speed: a fluid with a viscosity runs as fast as it flows");
-    if (++flows == 2)
-      problems.push_back(where + ".viscosity: one fluid of a case may flow, and load." +
-                         first_flow(config) + " does; its region may hold several places");
-  }
-  for (const LoadConfig& l : config.loads)
-    if (flows > 0 && l.kind == "fluid" && !l.flows())
-      problems.push_back("load." + l.name + ".kind: a fluid that flows, as load." +
-                         first_flow(config) + ", is the only fluid of a case");
-}
-
 }  // namespace
 
 std::vector<std::string> case_problems(const Config& config) {
@@ -84,10 +50,7 @@ std::vector<std::string> case_problems(const Config& config) {
     if (norm(m.bedding.normal) > 0.0)
       add("material." + m.name +
           ".bedding.normal is of tetrahedra; angle tells planes of triangles");
-  for (const LoadConfig& l : config.loads)
-    if (l.speed > 0.0 && l.kind != "fluid")
-      add("load." + l.name + ".speed: only a fluid has one; kind is \"" + l.kind + "\"");
-  check_flows(config, problems);
+  fdem_shared::check_fluids(config, problems);
   check_gas(config, problems);
   for (const std::string& problem : bolt_problems(config)) add(problem);
   for (const ProbeConfig& p : config.probes) {

@@ -11,10 +11,10 @@
 
 namespace breccia::fdem {
 
-/// Numbers beyond these are slips of a unit, and powers of them overflow.
-inline constexpr Range sane_strength{1e-3, 1e15};  ///<  [Pa]
-inline constexpr Range sane_energy{1e-9, 1e9};     ///<  [J/m2]
-inline constexpr Range sane_ratio{1e-6, 1e6};      ///<  [-]
+using fdem_shared::sane_strength;
+/// Likewise.
+inline constexpr Range sane_energy{1e-9, 1e9};  ///<  [J/m2]
+inline constexpr Range sane_ratio{1e-6, 1e6};   ///<  [-]
 
 /// Strengths of the joints of one material, or between two.
 struct StrengthConfig {
@@ -175,19 +175,6 @@ struct RegionConfig {
 
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec2>;
 
-/// [[load.outlet]]: where a fluid that flows leaves
-struct OutletConfig {
-  RegionConfig region;
-  double pressure = 0.0;  ///<  [Pa]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    region.each_key(key);
-    key("pressure", pressure, "Pa", any_number,
-        "pressure at the vertices in the region: another water level, or 0 where it runs out");
-  }
-};
-
 /// [load.explosive]: the gas of an explosive, by the equation of Jones, Wilkins and Lee
 struct ExplosiveConfig {
   double a = 0.0, b = 0.0;                 ///<  [Pa]
@@ -218,18 +205,10 @@ struct ExplosiveConfig {
 };
 
 /// [[load]]: forces on free edges
-struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
-  double speed = 0.0;                   ///< of a fluid's front; 0: at once  [m/s]
-  double viscosity = 0.0;               ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
-  double bulk = 2.2e9;                  ///< its bulk modulus  [Pa]
-  double aperture = 1e-5;               ///< of cracks that are closed  [m]
-  OverTime<double> rate;                ///< at which it comes in, instead of a pressure  [m2/s]
-  bool filled = false;                  ///< whether cracks that are open at the start hold it
-  std::vector<OutletConfig> outlets{};  ///< at most one
+struct LoadConfig : fdem_shared::FluidLoadConfigOf<RegionConfig, Vec2> {
   ExplosiveConfig explosive;
 
   bool is_gas() const { return explosive.energy > 0.0; }
-  bool flows() const { return kind == "fluid" && viscosity > 0.0; }
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -241,20 +220,7 @@ struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
         "on the border in the region, which spreads through broken joints and open cracks that are "
         "connected to the region");
     keys_of_size(key);
-    key("speed", speed, "m/s", not_negative,
-        "fluid: how fast its front runs in cracks that are broken; 0: it fills them as they break");
-    key("viscosity", viscosity, "Pa s", Range{0.0, 1e9},
-        "fluid: it flows through cracks by the cubic law, with this viscosity; 0: no flow, its "
-        "pressure is alike everywhere");
-    key("bulk", bulk, "Pa", sane_strength, "fluid that flows: its bulk modulus");
-    key("aperture", aperture, "m", Range{1e-9, 1.0},
-        "fluid that flows: aperture of a broken crack whose sides touch; their opening adds to it");
-    key("rate", rate, "m2/s", Range{0.0, 1e9},
-        "fluid that flows: how much comes in at its region per metre of thickness, or a table "
-        "[[t, q], ...] of it; then pressure is left out");
-    key("filled", filled,
-        "fluid that flows: cracks that are open at the start hold it, without pressure");
-    key.list("outlet", outlets, "fluid that flows: where it leaves, one region at most");
+    keys_of_fluid(key);
     key.table("explosive", explosive,
               "fluid: gas whose pressure follows from its volume; then pressure is left out");
     history.each_key(key);
@@ -318,17 +284,7 @@ struct BoltConfig {
 
 using SupportChange = fdem_shared::SupportChangeOf<Vec2>;
 
-/// [[stage.load]]: how large a load is from a stage on
-struct LoadChange : fdem_shared::LoadChangeOf<Vec2> {
-  OverTime<double> rate{};  ///<  [m2/s]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    LoadChangeOf::each_key(key);
-    key("rate", rate, "m2/s", Range{0.0, 1e9}, "rate of inflow from now on, likewise");
-  }
-};
-
+using LoadChange = fdem_shared::LoadChangeOf<Vec2>;
 /// [[stage]]
 struct StageConfig : fdem_shared::MeshStageConfig<Vec2, LoadChange> {
   double restitution = 0.0;  ///< 0: as before  [-]

@@ -1,54 +1,15 @@
 #include "fdem/setup/loads.hpp"
 
 #include <algorithm>
-#include <iterator>
 
-#include "exec/error.hpp"
 #include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/setup/bolts.hpp"
 #include "fdem/setup/regions.hpp"
+#include "fdem_shared/setup/fluids.hpp"
 
 namespace breccia::fdem {
 namespace {
-
-void prescribe_flow(FlowCase& flow, const LoadConfig& load) {
-  flow.by_rate = load.rate.is_table() || load.rate.value != 0.0;
-  const OverTime<double>& input = flow.by_rate ? load.rate : load.pressure;
-  flow.input = {input.is_table() ? 1.0 : input.value,
-                fdem_shared::amplitudes<Vec2>(input, load.history).x};
-}
-
-/// Sets the constants of a flowing fluid: viscosity, apertures, where it enters and leaves.
-void set_up_flow(World& w, const Config& config, const LoadConfig& load, const Model& model) {
-  FlowCase& flow = set_up(w).flow;
-  flow.on = true;
-  flow.triangles = model.size();
-  flow.viscosity = load.viscosity;
-  flow.bulk = load.bulk;
-  flow.aperture = load.aperture;
-  flow.filled = load.filled;
-  flow.load = static_cast<std::int16_t>(&load - config.loads.data());
-  flow.vertices = vertices_in(model, load.region, "load." + load.name);
-  std::sort(flow.vertices.begin(), flow.vertices.end());
-  for (const OutletConfig& outlet : load.outlets) {
-    flow.outlet = vertices_in(model, outlet.region, "load." + load.name + ".outlet");
-    std::sort(flow.outlet.begin(), flow.outlet.end());
-    flow.outlet_pressure = outlet.pressure;
-    std::vector<Index> both;
-    std::set_intersection(flow.vertices.begin(), flow.vertices.end(), flow.outlet.begin(),
-                          flow.outlet.end(), std::back_inserter(both));
-    if (!both.empty())
-      throw InputError("load." + load.name +
-                       ".outlet: it shares vertices with the region where the fluid comes in");
-  }
-  std::vector<JointBond> bonds;
-  copy_to(bonds, w.given->bonds);
-  flow.stiffness = 1e300;
-  for (const JointBond& bond : bonds) flow.stiffness = std::min(flow.stiffness, bond.stiffness);
-  for (const MaterialConfig& m : config.materials)
-    if (bonds.empty()) flow.stiffness = std::min(flow.stiffness, m.young);
-}
 
 /// Lets the source that was added last be the gas of an explosive.
 void set_up_gas(World& w, const LoadConfig& load, const Model& model,
@@ -67,15 +28,9 @@ void prescribe_loads(World& w, const Config& asked) {
   Config config = asked;
   for (LoadConfig& load : config.loads)
     if (load.is_gas()) load.pressure = 1.0;  // times that of its volume
-  fdem_shared::prescribe_loads(w, config);
-  Case& given = set_up(w);
-  for (std::size_t i = 0; i < config.loads.size(); ++i) {
-    if (!config.loads[i].flows()) continue;
-    prescribe_flow(given.flow, config.loads[i]);  // each edge has a pressure of its own
-    given.loads[i] = {LoadKind::fluid, {1.0, 1.0}, 1.0, {}, {}};
-    given.load_amplitudes[i] = {};
-  }
+  fdem_shared::prescribe_loads_and_flow(w, config);
   if (config.bolts.empty()) return;
+  Case& given = set_up(w);
   given.loads.push_back({LoadKind::bolt, {1.0, 1.0}, 1.0, {}, {}});  // the last one
   given.load_amplitudes.emplace_back();
 }
@@ -85,16 +40,19 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
   std::vector<EdgeDashpots> dashpots;
   prescribe_loads(w, config);
   set_up_bolts(w, config, model);
+  const auto ports = [&](const RegionConfig& region, const std::string& where) {
+    const std::vector<Index> vertices = vertices_in(model, region, where);
+    return std::vector<fdem_shared::Port>(vertices.begin(), vertices.end());
+  };
   for (const LoadConfig& load : config.loads) {
     const auto index = static_cast<std::int16_t>(&load - config.loads.data());
     const LoadKind kind = w.given->loads[at(index)].kind;
     if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
     const std::size_t first = loaded.size();
     double length = 0.0;
-    if (load.flows()) set_up_flow(w, config, load, model);
+    if (load.flows()) fdem_shared::set_up_flow(w, config, load, model, ports);
     if (kind == LoadKind::fluid)
-      set_up(w).fluids.push_back(
-          {index, load.speed, vertices_in(model, load.region, "load." + load.name)});
+      set_up(w).fluids.push_back({{index, load.speed, ports(load.region, "load." + load.name)}});
     const std::vector<Index> edges =
         edges_in(model, load.region, "load." + load.name, kind != LoadKind::fluid || load.is_gas());
     for (const Index edge : edges) {
@@ -128,7 +86,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
   });
   set_up(w).loaded = std::move(loaded);
   spread_fluid(w);
-  list_loaded_edges(w);
+  list_loaded(w);
   copy_to(w.dashpots, dashpots);
   w.triangles.external.resize(w.triangles.size());
 }

@@ -86,8 +86,11 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
                             static_cast<std::size_t>(model.material[b])];
     if (found == BondTable::nothing) {
       if (weak != discontinuities.end())
-        given.open_cracks.push_back({e.a, e.b, w.vertex[at(e.a)], w.vertex[at(next(e.a))],
-                                     norm(model.point[at(e.high)] - model.point[at(e.low)]), 0.0});
+        given.open_cracks.push_back({e.a,
+                                     e.b,
+                                     {w.vertex[at(e.a)], w.vertex[at(next(e.a))]},
+                                     norm(model.point[at(e.high)] - model.point[at(e.low)]),
+                                     0.0});
       open(3);
       continue;
     }

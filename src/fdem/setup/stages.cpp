@@ -10,8 +10,6 @@ Config config_at(Config config, const StageProgress& progress) {
     const StageConfig& stage = config.stages[k];
     fdem_shared::begin_stage(config, stage, progress.begin[k]);
     if (stage.restitution > 0.0) config.contact.restitution = stage.restitution;
-    for (const LoadChange& change : stage.loads)
-      if (LoadConfig* const load = find_named(config.loads, change.name)) load->rate = change.rate;
   }
   return config;
 }

@@ -20,6 +20,12 @@ struct LoadedEdge {
   /// rho c_p and rho c_s of its triangle  [Pa s/m]; of a bolt: x and y of what it pulls with  [N/m]
   double impedance_p, impedance_s;
 
+  static LoadedEdge of(Index number, std::int16_t load, double share) {
+    return {number / 3, static_cast<std::int16_t>(number % 3), load, share, 0.0, 0.0};
+  }
+  Index number() const { return 3 * triangle + edge; }
+  Index& element() { return triangle; }
+  Index element() const { return triangle; }
   BR_HD Vec2 pull() const { return {impedance_p, impedance_s}; }
 };
 

@@ -15,9 +15,16 @@ using PrescribedMotion = fdem_shared::PrescribedMotionOf<Vec3>;
 struct LoadedFace {
   Index tetrahedron;
   std::int16_t face;
-  std::int16_t load;                ///< index into the laws
-  double share;                     ///< of the load's faces, by area at the start  [-]
+  std::int16_t load;  ///< index into the laws
+  double share;       ///< of the load's faces, by area at the start; of a fluid: filled part  [-]
   double impedance_p, impedance_s;  ///< rho c_p and rho c_s of its tetrahedron  [Pa s/m]
+
+  static LoadedFace of(Index number, std::int16_t load, double share) {
+    return {number / 4, static_cast<std::int16_t>(number % 4), load, share, 0.0, 0.0};
+  }
+  Index number() const { return 4 * tetrahedron + face; }
+  Index& element() { return tetrahedron; }
+  Index element() const { return tetrahedron; }
 };
 
 /// Adds the loads of one tetrahedron's faces, a third to each corner.
@@ -57,6 +64,7 @@ struct LoadForces {
       return;
     }
     const Vec3 whole = law.kind == LoadKind::pressure   ? -law.pressure * outward
+                       : law.kind == LoadKind::fluid    ? (-law.pressure * face.share) * outward
                        : law.kind == LoadKind::traction ? norm(outward) * law.traction
                                                         : face.share * law.force;
     const Vec3 third{law.factor.x / 3.0 * whole.x, law.factor.y / 3.0 * whole.y,

@@ -50,15 +50,18 @@ struct RegionConfig {
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec3>;
 
 /// [[load]]: forces on free faces
-struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec3> {
+struct LoadConfig : fdem_shared::FluidLoadConfigOf<RegionConfig, Vec3> {
   template <class Visit>
   void each_key(Visit&& key) {
     keys_of_place(key);
-    key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing"},
+    key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing", "fluid"},
         "pressure: against the face, and traction: along fixed axes, both per present area; "
         "force: a sum, spread over the faces by their area at the start, that stays as given "
-        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
+        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer); fluid: a pressure "
+        "on the border in the region, which spreads through broken joints and open cracks that are "
+        "connected to the region");
     keys_of_size(key);
+    keys_of_fluid(key);
     history.each_key(key);
   }
 };

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "fdem3/fluid/fluid.hpp"
 #include "fdem3/setup/regions.hpp"
-#include "fdem_shared/loaded_sides.hpp"
+#include "fdem_shared/setup/fluids.hpp"
 
 namespace breccia::fdem3 {
 namespace {
@@ -18,17 +19,29 @@ double area_of(const Model& model, Index face) {
 
 }  // namespace
 
+void prescribe_loads(World& w, const Config& config) {
+  fdem_shared::prescribe_loads_and_flow(w, config);
+}
+
 void set_up_loads(World& w, const Config& config, const Model& model) {
   std::vector<LoadedFace> loaded;
   std::vector<FaceDashpots> dashpots;
   prescribe_loads(w, config);
+  const auto ports = [&](const RegionConfig& region, const std::string& where) {
+    return ports_in(model, region, where);
+  };
   for (std::size_t l = 0; l < config.loads.size(); ++l) {
     const LoadConfig& load = config.loads[l];
-    const bool absorbs = w.given->loads[l].kind == LoadKind::absorbing;
+    const LoadKind kind = w.given->loads[l].kind;
+    const bool absorbs = kind == LoadKind::absorbing, is_fluid = kind == LoadKind::fluid;
     if (absorbs) dashpots.resize(model.tetrahedron.size());
     const std::size_t first = loaded.size();
     double area = 0.0;
-    for (const Index face : faces_in(model, load.region, "load." + load.name)) {
+    if (load.flows()) fdem_shared::set_up_flow(w, config, load, model, ports);
+    if (is_fluid)
+      set_up(w).fluids.push_back(
+          {static_cast<std::int16_t>(l), load.speed, ports(load.region, "load." + load.name)});
+    for (const Index face : faces_in(model, load.region, "load." + load.name, !is_fluid)) {
       const auto t = at(face / 4);
       const auto material = static_cast<std::size_t>(model.material[t]);
       const double density = config.materials[material].density;
@@ -38,24 +51,22 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
       area += own;
       if (absorbs) dashpots[t].at[face % 4] += impedance * w.given->load_amplitudes[l].x.largest();
     }
-    for (std::size_t i = first; i < loaded.size(); ++i) loaded[i].share /= area;
+    for (std::size_t i = first; i < loaded.size(); ++i)
+      loaded[i].share = is_fluid ? 1.0 : loaded[i].share / area;
+    if (!load.flows()) continue;
+    set_up(w).flow.borders.assign(loaded.begin() + static_cast<std::ptrdiff_t>(first),
+                                  loaded.end());
+    loaded.resize(first);
   }
-  if (loaded.empty()) return;
+  if (loaded.empty() && w.given->fluids.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedFace& a, const LoadedFace& b) {
     return a.tetrahedron < b.tetrahedron;
   });
   set_up(w).loaded = std::move(loaded);
-  list_loaded_faces(w);
+  spread_fluid(w);
+  list_loaded(w);
   copy_to(w.dashpots, dashpots);
   w.tetrahedra.external.resize(w.tetrahedra.size());
-}
-
-void list_loaded_faces(World& w) {
-  if (w.given->loaded.empty()) return;
-  const auto here = fdem_shared::loaded_here(
-      w.given->loaded, w.tetrahedra.id, [](auto& face) -> auto& { return face.tetrahedron; });
-  copy_to(w.load_starts, here.starts);
-  copy_to(w.loaded_faces, here.sides);
 }
 
 }  // namespace breccia::fdem3

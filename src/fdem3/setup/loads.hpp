@@ -6,9 +6,10 @@
 
 namespace breccia::fdem3 {
 
-using fdem_shared::prescribe_loads;
 using fdem_shared::set_up;
 
+/// How large loads are, and how that changes: what configure() writes anew.
+void prescribe_loads(World& w, const Config& config);
 /// Which faces they act on.
 void set_up_loads(World& w, const Config& config, const Model& model);
 

@@ -12,13 +12,32 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& config,
 }
 
 std::vector<Index> faces_in(const Model& model, const RegionConfig& config,
-                            const std::string& where) {
+                            const std::string& where, bool needed) {
   const fdem_shared::Region<Shape, Model, RegionConfig> region(model, config, where);
   std::vector<Index> faces;
   for (const MeshFace& f : mesh_faces(model))
     if (f.b < 0 && region.takes_side(at(f.a / 4), f.corners)) faces.push_back(f.a);
-  if (faces.empty()) throw InputError(where + ": its region holds no face on the border");
+  if (faces.empty() && needed) throw InputError(where + ": its region holds no face on the border");
   return faces;
+}
+
+std::vector<fdem_shared::Port> ports_in(const Model& model, const RegionConfig& config,
+                                        const std::string& where) {
+  const fdem_shared::Region<Shape, Model, RegionConfig> region(model, config, where);
+  std::vector<fdem_shared::Port> ports;
+  for (std::size_t t = 0; t < model.tetrahedron.size(); ++t) {
+    const auto& corner = model.tetrahedron[t];
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (region.takes(t, corner[i]) && region.takes(t, corner[k]))
+          ports.push_back(fdem_shared::port_between(corner[i], corner[k]));
+  }
+  if (ports.empty())
+    throw InputError(where + ": its region holds no edge of any tetrahedron, both ends of it" +
+                     region.nearest_corner());
+  std::sort(ports.begin(), ports.end());
+  ports.erase(std::unique(ports.begin(), ports.end()), ports.end());
+  return ports;
 }
 
 }  // namespace breccia::fdem3

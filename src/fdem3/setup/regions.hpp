@@ -6,6 +6,7 @@
 
 #include "fdem3/setup/config.hpp"
 #include "fdem3/setup/model.hpp"
+#include "fdem_shared/fluid/cracks.hpp"
 
 namespace breccia::fdem3 {
 
@@ -15,8 +16,12 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
                               const std::string& where);
 
 /// Faces 4 t + k on the border of the mesh with all corners in a region.
-/// @throws InputError likewise
+/// @throws InputError likewise, if any are needed
 std::vector<Index> faces_in(const Model& model, const RegionConfig& region,
-                            const std::string& where);
+                            const std::string& where, bool needed = true);
+
+/// Edges of tetrahedra with both ends in a region, ascending. @throws InputError likewise
+std::vector<fdem_shared::Port> ports_in(const Model& model, const RegionConfig& region,
+                                        const std::string& where);
 
 }  // namespace breccia::fdem3

@@ -150,7 +150,7 @@ class Joining {
                   .of_pair[static_cast<std::size_t>(model_.material[a]) * config_.materials.size() +
                            static_cast<std::size_t>(model_.material[b])];
     if (found == fdem::BondTable::nothing) {
-      if (weak != weak_.end()) set_up(w_).open_cracks.push_back({f.a, f.b});
+      if (weak != weak_.end()) set_up(w_).open_cracks.push_back(open_crack(f));
       return open(f, 3);
     }
     if (found == fdem::BondTable::bonded) {
@@ -159,6 +159,20 @@ class Joining {
       return;
     }
     join(f, found);
+  }
+  /// A crack that is open from the start.
+  fdem_shared::FaceCrack open_crack(const MeshFace& f) const {
+    Index v[3];
+    for (int k = 0; k < 3; ++k)
+      v[k] = model_.tetrahedron[at(f.b / 4)][at(corner_of_face(f.b % 4, k))];
+    fdem_shared::FaceCrack crack{.a = f.a, .b = f.b, .turn = turn_between(model_, f.a, f.b)};
+    for (int k = 0; k < 3; ++k) {
+      const Index p = v[k], q = v[(k + 1) % 3];
+      crack.port[k] = fdem_shared::port_between(p, q);
+      crack.edge[k] = norm(model_.point[at(q)] - model_.point[at(p)]);
+    }
+    crack.length = (volume_of(model_, at(f.a / 4)) + volume_of(model_, at(f.b / 4))) / crack.area();
+    return crack;
   }
   void open(const MeshFace& f, std::uint8_t bits) {
     for (const Index vertex : f.corners) set_up(w_).open_vertex[at(vertex)] |= bits;

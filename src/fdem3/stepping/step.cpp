@@ -1,5 +1,6 @@
 #include "fdem3/stepping/step.hpp"
 
+#include "fdem3/fluid/fluid.hpp"
 #include "fdem3/ranks.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem3/stepping/launches.hpp"
@@ -54,6 +55,11 @@ double shortened_time_step(const World& w, const Buffer<Index>& tetrahedra) {
   return fdem_shared::world_shortened_step(w, tetrahedra);
 }
 
+void StepwiseRun::load_forces(World& w) const {
+  if (w.given->flow.on) flow_on(w);
+  fdem_shared::StepwiseRun<World>::load_forces(w);
+}
+
 void share_bundle_forces(World& w) {
   StepwiseRun{}.bundle_forces(w);
 }
@@ -65,7 +71,9 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  return advance_by_steps(w, stop);
+  if (!w.given->flow.on) return advance_by_steps(w, stop);
+  step(w);  // places of cracks come to the host in every step, on a device, too
+  return {1, w.last_dt, w.last_dt};
 }
 
 }  // namespace breccia::fdem3

@@ -11,7 +11,11 @@ namespace breccia::fdem3 {
 
 using fdem_shared::take_forces;
 using fdem_shared::take_step;
-using StepwiseRun = fdem_shared::StepwiseRun<World>;
+
+/// Fluid that flows, besides what both shapes share.
+struct StepwiseRun : fdem_shared::StepwiseRun<World> {
+  void load_forces(World& w) const;
+};
 
 /// Loops on the host, shared by threads.
 struct HostRun : fdem_shared::MovingRun<StepwiseRun, World> {

@@ -14,6 +14,9 @@
 
 namespace breccia::fdem_shared {
 
+/// Numbers beyond these are slips of a unit, and powers of them overflow.
+inline constexpr Range sane_strength{1e-3, 1e15};  ///<  [Pa]
+
 /// [[friction]]
 struct FrictionConfig {
   std::vector<std::string> between;
@@ -137,6 +140,59 @@ struct LoadConfigOf {
   }
 };
 
+/// [[load.outlet]]: where a fluid that flows leaves
+template <class RegionConfig, class Vector>
+struct OutletConfigOf {
+  RegionConfig region;
+  double pressure = 0.0;  ///<  [Pa]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    region.each_key(key);
+    key("pressure", pressure, "Pa", any_number,
+        std::is_same_v<Vector, Vec2>
+            ? "pressure at the vertices in the region: another water level, or 0 where it runs out"
+            : "pressure at the edges in the region: another water level, or 0 where it runs out");
+  }
+};
+
+/// [[load]] with fluids.
+template <class RegionConfig, class Vector>
+struct FluidLoadConfigOf : LoadConfigOf<RegionConfig, Vector> {
+  double speed = 0.0;      ///< of a fluid's front; 0: at once  [m/s]
+  double viscosity = 0.0;  ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
+  double bulk = 2.2e9;     ///< its bulk modulus  [Pa]
+  double aperture = 1e-5;  ///< of cracks that are closed  [m]
+  OverTime<double> rate;   ///< at which it comes in, instead of a pressure  [m3/s; in 2D m2/s]
+  bool filled = false;     ///< whether cracks that are open at the start hold it
+  std::vector<OutletConfigOf<RegionConfig, Vector>> outlets{};  ///< at most one
+
+  bool flows() const { return this->kind == "fluid" && viscosity > 0.0; }
+
+ protected:
+  template <class Visit>
+  void keys_of_fluid(Visit&& key) {
+    constexpr bool plane = std::is_same_v<Vector, Vec2>;
+    key("speed", speed, "m/s", not_negative,
+        "fluid: how fast its front runs in cracks that are broken; 0: it fills them as they break");
+    key("viscosity", viscosity, "Pa s", Range{0.0, 1e9},
+        "fluid: it flows through cracks by the cubic law, with this viscosity; 0: no flow, its "
+        "pressure is alike everywhere");
+    key("bulk", bulk, "Pa", sane_strength, "fluid that flows: its bulk modulus");
+    key("aperture", aperture, "m", Range{1e-9, 1.0},
+        "fluid that flows: aperture of a broken crack whose sides touch; their opening adds to it");
+    key("rate", rate, plane ? "m2/s" : "m3/s", Range{0.0, 1e9},
+        plane
+            ? "fluid that flows: how much comes in at its region per metre of thickness, or a "
+              "table [[t, q], ...] of it; then pressure is left out"
+            : "fluid that flows: how much comes in at its region, or a table [[t, q], ...] of it; "
+              "then pressure is left out");
+    key("filled", filled,
+        "fluid that flows: cracks that are open at the start hold it, without pressure");
+    key.list("outlet", outlets, "fluid that flows: where it leaves, one region at most");
+  }
+};
+
 /// [[stage.load]]: how large a load is from a stage on
 template <class Vector>
 struct LoadChangeOf {
@@ -145,6 +201,7 @@ struct LoadChangeOf {
   OverTime<Vector> traction;  ///<  [Pa]
   OverTime<Vector> force;     ///<  [N; in 2D N/m]
   double ramp = 0.0;          ///<  [s]
+  OverTime<double> rate{};    ///<  [m3/s; in 2D m2/s]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -157,6 +214,8 @@ struct LoadChangeOf {
         "force from now on, likewise");
     key("ramp", ramp, "s", not_negative,
         "time since the stage began in which it grows from zero, linearly");
+    key("rate", rate, std::is_same_v<Vector, Vec2> ? "m2/s" : "m3/s", Range{0.0, 1e9},
+        "rate of inflow from now on, likewise");
   }
 };
 

@@ -34,6 +34,7 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
       load->pressure = change.pressure;
       load->traction = change.traction;
       load->force = change.force;
+      load->rate = change.rate;
       load->history = {change.ramp, {}, {}, begin};
     }
   for (const MaterialChange& change : stage.materials)

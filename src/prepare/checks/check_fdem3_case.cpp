@@ -7,6 +7,7 @@
 #include "fdem/setup/case_rules.hpp"
 #include "fdem3/setup/materials.hpp"
 #include "fdem3/setup/stages.hpp"
+#include "fdem_shared/setup/fluid_rules.hpp"
 #include "prepare/checks/check_bodies.hpp"
 
 namespace breccia::prepare {
@@ -31,6 +32,7 @@ class TetCaseChecks {
       check_region("load." + l.name, l.region);
       check_kind("load." + l.name, l.kind, l);
     }
+    fdem_shared::check_fluids(config, problems_);
     for (const ProbeConfig& p : config.probes)
       for (const std::string& problem : probe_problems(p, in_solid)) add(problem);
     for (const std::string& problem : fdem3::stage_problems(config)) add(problem);
@@ -54,7 +56,7 @@ class TetCaseChecks {
       if (given && kind != key)
         add(fmt::format("{}.{} has no use: the load is of kind \"{}\"", where, key, kind));
     };
-    look("pressure", load.pressure.is_table() || load.pressure.value != 0.0);
+    if (kind != "fluid") look("pressure", load.pressure.is_table() || load.pressure.value != 0.0);
     look("traction", load.traction.is_table() || !is_zero(load.traction.value));
     look("force", load.force.is_table() || !is_zero(load.force.value));
   }

@@ -2,6 +2,7 @@
 
 #include "exec/error.hpp"
 #include "fdem3/emission.hpp"
+#include "fdem3/fluid/fluid.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem3/ranks.hpp"
 #include "fdem3/servos.hpp"
@@ -34,6 +35,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
 
   void add_findings(const World& w, std::vector<Fact>& facts) const {
     add_cracks(w, facts);
+    add_fluids(w, facts, [&](std::size_t k) { return given_pressure(w, k); });
     add_emission(facts, fdem3::emission(w, places));
     std::vector<double> mass;
     for (const fdem3::Piece& piece : fdem3::fragments(w).pieces) mass.push_back(piece.mass);
@@ -78,6 +80,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
     each_stored_array(w, visit, [&](const Visit& of) {
       of.fields("joint_force", Loose<fdem3::JointForce>{"force", w.joints.force});
     });
+    each_stored_fluid(w, visit);
   }
 };
 

@@ -33,32 +33,13 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
     }
   }
 
-  static bool has_fluid(const World& w) { return !w.given->fluids.empty(); }
-  static void spread(World& part) { fdem::spread_fluid(part); }
-  static void restore(World& part) { fdem::restore_fluid(part); }
   static FramePart frame(World& w, const World* mesh) { return fdem_frame(w, mesh); }
 
   void add_findings(const World& w, std::vector<Fact>& facts) const {
-    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add_cracks(w, facts);
-    for (std::size_t k = 0; k < w.given->fluids.size(); ++k) {
-      const fdem::FluidSource& fluid = w.given->fluids[k];
-      const auto load = static_cast<std::size_t>(fluid.load);
-      const fdem::FilledPart filled = fdem::filled_part(w, load);
-      const std::string path = "fluid." + w.given->load_names[load] + ".";
-      add(path + "length", filled.length);
-      add(path + "volume", filled.volume);
-      const bool flows = w.given->flow.on && w.given->flow.load == fluid.load;
-      if (!fluid.holes.empty())
-        add(path + "pressure", w.fluid.gas.data()[k]);
-      else if (!flows)
-        add(path + "pressure",
-            w.given->load_amplitudes[load].at(w.time).x * w.given->loads[load].pressure);
-      if (!flows) continue;
-      add(path + "injected", w.fluid.injected);
-      if (!w.given->flow.outlet.empty()) add(path + "released", w.fluid.released);
-      add(path + "pressure", w.fluid.pressure);
-    }
+    add_fluids(w, facts, [&](std::size_t k) {
+      return w.given->fluids[k].holes.empty() ? given_pressure(w, k) : w.fluid.gas.data()[k];
+    });
     add_bolts(w, facts);
     add_emission(facts, events(w));
     add_fragments(fdem::fragments(w).mass, facts);
@@ -149,13 +130,8 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
       visit("bolts.time", w.bolts.time);
       visit.fields("bolts", Loose<fdem::BoltNode>{"node", w.bolts.nodes});
     }
-    if (has_fluid(w)) visit("fluid.time", w.fluid.time);
+    each_stored_fluid(w, visit);
     if (fdem::has_gas(w)) visit.fields("gas", Loose<double>{"pressure", w.fluid.gas});
-    if (!w.given->flow.on) return;
-    visit("fluid.injected", w.fluid.injected);
-    if (!w.given->flow.outlet.empty()) visit("fluid.released", w.fluid.released);
-    visit("fluid.pressure", w.fluid.pressure);
-    visit.fields("fluid", Loose<double>{"volume", w.fluid.volume});
   }
 };
 

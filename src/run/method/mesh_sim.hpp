@@ -33,6 +33,9 @@ struct MeshSim {
   static std::vector<std::size_t> changed_servos(const Config& config, std::size_t stage) {
     return changed_supports(config, stage);
   }
+  static bool has_fluid(const World& w) { return !w.given->fluids.empty(); }
+  static void spread(World& part) { spread_fluid(part); }
+  static void restore(World& part) { restore_fluid(part); }
   /// Corners that a stage sets free may need shorter steps than those it held.
   static void begun(World& part) { part.next_dt = std::min(part.next_dt, choose_time_step(part)); }
   static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t) {
@@ -97,6 +100,32 @@ struct MeshSim {
                      mass.empty() ? 0.0 : mass.front() / total});  // a stage may have taken all out
   }
 
+  /// @param pressure_of  pressure_of(k): of fluid k, that does not flow  [Pa]
+  template <class Pressure>
+  static void add_fluids(const World& w, std::vector<Fact>& facts, const Pressure& pressure_of) {
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    for (std::size_t k = 0; k < w.given->fluids.size(); ++k) {
+      const auto load = static_cast<std::size_t>(w.given->fluids[k].load);
+      const auto filled = filled_part(w, load);
+      const std::string path = "fluid." + w.given->load_names[load] + ".";
+      add(path + (axes == 3 ? "area" : "length"), filled.extent);
+      add(path + "volume", filled.volume);
+      const bool flows = w.given->flow.on && static_cast<std::size_t>(w.given->flow.load) == load;
+      if (!flows) {
+        add(path + "pressure", pressure_of(k));
+        continue;
+      }
+      add(path + "injected", w.fluid.injected);
+      if (!w.given->flow.outlet.empty()) add(path + "released", w.fluid.released);
+      add(path + "pressure", w.fluid.pressure);
+    }
+  }
+  /// Of a fluid whose pressure is given.  [Pa]
+  static double given_pressure(const World& w, std::size_t fluid) {
+    const auto load = static_cast<std::size_t>(w.given->fluids[fluid].load);
+    return w.given->load_amplitudes[load].at(w.time).x * w.given->loads[load].pressure;
+  }
+
   static void add_arrays(World& w, StateArrays& arrays) {
     auto& e = Shape::elements(w);
     using Node = std::remove_reference_t<decltype(e.nodes.data()->at[0])>;
@@ -141,6 +170,15 @@ struct MeshSim {
     });
   }
 
+  template <class Visit>
+  static void each_stored_fluid(World& w, const Visit& visit) {
+    if (has_fluid(w)) visit("fluid.time", w.fluid.time);
+    if (!w.given->flow.on) return;
+    visit("fluid.injected", w.fluid.injected);
+    if (!w.given->flow.outlet.empty()) visit("fluid.released", w.fluid.released);
+    visit("fluid.pressure", w.fluid.pressure);
+    visit.fields("fluid", Loose<double>{"volume", w.fluid.volume});
+  }
   /// @param joint_forces  joint_forces(visit): forces of joints, in the precision of the run
   template <class Visit, class JointForces>
   static void each_stored_array(World& w, const Visit& visit, const JointForces& joint_forces) {

@@ -189,6 +189,27 @@ Config case_of_specimen(const CaseConfig& config) {
   return one;
 }
 
+/// Its fluids. @param part  part(load, outlet): lets an outlet be elsewhere
+template <class Given, class Config, class Part>
+void add_fluids(const Given& config, Config& one, const Part& part) {
+  for (const auto& load : config.loads)
+    if (load.kind == "fluid") {
+      auto& added = one.loads.emplace_back();
+      added.name = load.name;
+      added.kind = load.kind;
+      added.viscosity = load.viscosity;
+      if (load.outlets.empty()) continue;
+      part(added, added.outlets.emplace_back().region);
+    }
+}
+
+/// One edge of a tetrahedron, and the one opposite.
+void part_outlet(fdem3::LoadConfig& load, fdem3::RegionConfig& outlet) {
+  load.region.max = {0.5, 0.5, no_limit};
+  outlet.center = {1.0, 1.0, 0.0};
+  outlet.radius = 1.1;
+}
+
 }  // namespace
 
 void check_shown(const dem::Config& config) {
@@ -201,6 +222,7 @@ void check_shown(const coupled::Config& config) {
   auto one = case_of_specimen<coupled::Config>(config);
   one.spheres.materials.emplace_back();
   one.tetrahedra.materials.emplace_back();
+  add_fluids(config.tetrahedra, one.tetrahedra, part_outlet);
   coupled::Model model{specimen_of(config.spheres), specimen_of(config.tetrahedra)};
   for (Vec3& place : model.spheres.position) place.y = 100.0;  // clear of the tetrahedra
   refuse_what_is_not_shown(config, *make_method(one, model, {}));
@@ -211,15 +233,10 @@ void check_shown(const fdem::Config& config) {
   one.materials.emplace_back();
   one.domain.show = config.domain.show;
   one.output = config.output;
-  for (const fdem::LoadConfig& load : config.loads)
-    if (load.kind == "fluid") {
-      one.loads.emplace_back().name = load.name;
-      one.loads.back().kind = load.kind;
-      one.loads.back().viscosity = load.viscosity;
-      if (load.outlets.empty()) continue;
-      one.loads.back().region.max = {0.5, 0.5};  // the first corner, and another one
-      one.loads.back().outlets.emplace_back().region.min = {0.5, -0.5};
-    }
+  add_fluids(config, one, [](fdem::LoadConfig& load, fdem::RegionConfig& outlet) {
+    load.region.max = {0.5, 0.5};  // the first corner, and another one
+    outlet.min = {0.5, -0.5};
+  });
   fdem::Model model;  // one triangle a body
   for (const fdem::BodyConfig& body : config.bodies) {
     const auto first = static_cast<Index>(model.point.size());
@@ -245,6 +262,7 @@ void check_shown(const fdem::Config& config) {
 void check_shown(const fdem3::Config& config) {
   auto one = case_of_specimen<fdem3::Config>(config);
   one.materials.emplace_back();
+  add_fluids(config, one, part_outlet);
   refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}));
 }
 

@@ -1,19 +1,21 @@
 // Flow through cracks by the cubic law: levels, transients, fronts, volume.
 
-#include "fdem/fluid/flow.hpp"
+#include "fdem_shared/fluid/flow.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 namespace flow_test {
+
+using FlowCell = LineCell;
 
 /// A row of cracks from vertex 0 on.
 std::vector<FlowCell> row(int count, double length, double aperture, double bulk, bool filled) {
   std::vector<FlowCell> cells;
   for (int i = 0; i < count; ++i) {
-    cells.push_back({i, i + 1, length, aperture, bulk, 0.0});
+    cells.push_back({{i, i + 1}, length, aperture, bulk, 0.0});
     if (filled) cells.back().fluid = cells.back().room();
   }
   return cells;
@@ -70,7 +72,7 @@ TEST(Flow, leaves_at_another_level) {
 TEST(Flow, passes_by_the_cube_of_the_aperture) {
   for (const double a : {20e-6, 40e-6}) {
     std::vector<FlowCell> cells = row(10, 0.01, a, 2.2e9, true);
-    cells.push_back({10, 11, 1.0, 1.0, 2.2e9, 0.0});
+    cells.push_back({{10, 11}, 1.0, 1.0, 2.2e9, 0.0});
     const FlowSource source{{0}, false, 2e5};
     flow(cells, source, 1e-3, 0.2);
     const double before = cells.back().fluid;
@@ -103,7 +105,7 @@ TEST(Flow, fills_dry_cracks_with_a_front) {
 /// nothing but rounding.
 TEST(Flow, divides_by_cubes_where_cracks_meet) {
   std::vector<FlowCell> cells{
-      {0, 1, 0.1, 1e-4, 1e9, 0.0}, {1, 2, 0.1, 1e-4, 1e9, 0.0}, {3, 1, 0.1, 2e-4, 1e9, 0.0}};
+      {{0, 1}, 0.1, 1e-4, 1e9, 0.0}, {{1, 2}, 0.1, 1e-4, 1e9, 0.0}, {{3, 1}, 0.1, 2e-4, 1e9, 0.0}};
   cells[0].fluid = cells[0].room();
   const FlowSource source{{0}, false, 1e4};
   for (int k = 0; k < 10; ++k) flow(cells, source, 1e-2, 1e-4);
@@ -121,4 +123,4 @@ TEST(Flow, is_stable_where_cracks_are_wide) {
 }
 
 }  // namespace flow_test
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared

@@ -4,20 +4,20 @@
 
 #include <algorithm>
 
-#include "fdem/fluid/spreading.hpp"
+#include "fdem_shared/fluid/spreading.hpp"
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 namespace fluid_spreading_test {
 
-double share_of(const std::vector<FilledCrack>& filled, Index edge) {
-  for (const FilledCrack& f : filled)
-    if (f.a == edge) return f.share;
+double share_of(const std::vector<FilledCrack<LineCrack>>& filled, Index edge) {
+  for (const FilledCrack<LineCrack>& f : filled)
+    if (f.crack.a == edge) return f.share;
   return 0.0;
 }
 
 /// Three cracks in a row, of 1, 2 and 1 m; the second breaks at 3 s. The front runs at 2 m/s.
-std::vector<CrackSide> row() {
-  return {{0, 10, 1, 2, 1.0, 0.0}, {3, 13, 2, 3, 2.0, 3.0}, {6, 16, 3, 4, 1.0, 0.0}};
+std::vector<LineCrack> row() {
+  return {{0, 10, {1, 2}, 1.0, 0.0}, {3, 13, {2, 3}, 2.0, 3.0}, {6, 16, {3, 4}, 1.0, 0.0}};
 }
 
 TEST(FluidSpreading, fills_a_row_of_cracks_at_its_speed_and_waits_for_them_to_break) {
@@ -44,10 +44,10 @@ TEST(FluidSpreading, fills_what_is_connected_at_once_without_a_speed) {
 /// Around a ring of which one way is shorter: the front comes by that one, and then from both
 /// sides.
 TEST(FluidSpreading, takes_the_shortest_way_whatever_the_order_of_cracks) {
-  std::vector<CrackSide> ring{{0, 1, 1, 2, 1.0, 0.0},
-                              {3, 4, 2, 3, 1.0, 0.0},
-                              {6, 7, 1, 4, 4.0, 0.0},
-                              {9, 10, 4, 3, 2.0, 0.0}};
+  std::vector<LineCrack> ring{{0, 1, {1, 2}, 1.0, 0.0},
+                              {3, 4, {2, 3}, 1.0, 0.0},
+                              {6, 7, {1, 4}, 4.0, 0.0},
+                              {9, 10, {4, 3}, 2.0, 0.0}};
   for (int turn = 0; turn < 4; ++turn) {
     std::rotate(ring.begin(), ring.begin() + 1, ring.end());
     // At vertex 3 after 2 s, at 4 after 4 s by either way.
@@ -58,4 +58,4 @@ TEST(FluidSpreading, takes_the_shortest_way_whatever_the_order_of_cracks) {
 }
 
 }  // namespace fluid_spreading_test
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared

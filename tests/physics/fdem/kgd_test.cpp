@@ -114,7 +114,7 @@ Misfit misfit(int per_metre) {
   for (const double t : {0.6 * end, 0.8 * end, end}) {
     while (w.time < t) step(w);
     const Closed closed(t);
-    const double length = filled_part(w, 0).length, opening = opening_at_inlet(w);
+    const double length = filled_part(w, 0).extent, opening = opening_at_inlet(w);
     std::printf("%d edges a metre, %.1f ms: l %.4f of %.4f m, w %.4f of %.4f mm, p %.2f MPa\n",
                 per_metre, 1e3 * t, length, closed.length, 1e3 * opening, 1e3 * closed.opening,
                 1e-6 * w.fluid.pressure);

@@ -1,0 +1,30 @@
+#pragma once
+// What ranks take over of a fluid from rank 0.
+
+#include "domain/together.hpp"
+#include "exec/buffer.hpp"
+
+namespace breccia::fdem_shared {
+
+/// The items of an array that all ranks have with one length, as rank 0 has them.
+template <class Item>
+void take_items(Communicator& ranks, Buffer<Item>& items) {
+  Message message;
+  put_bytes(message, reinterpret_cast<const std::uint8_t*>(items.data()),
+            at(items.size()) * sizeof(Item));
+  message = ranks.from_first(std::move(message));
+  __builtin_memcpy(items.data(), message.data(), message.size());
+}
+
+template <class Case, class State>
+void take_fluid(Communicator& ranks, const Case& given, State& fluid) {
+  take_from_first(ranks, fluid.time);
+  if (!given.flow.on) return;
+  take_from_first(ranks, fluid.injected);
+  take_from_first(ranks, fluid.released);
+  take_from_first(ranks, fluid.pressure);
+  BR_ASSERT(fluid.volume.size() > 0);
+  take_items(ranks, fluid.volume);
+}
+
+}  // namespace breccia::fdem_shared
