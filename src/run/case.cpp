@@ -176,15 +176,14 @@ constexpr Instead instead[] = {
     {"fdem3d", "contact", "faces of tetrahedra lose energy by friction and `damping`"},
 };
 
-/// Whether a key is one of a method, by the first and last words of its path.
+/// Whether a method has a key or table: its first word as the first one, its last word as any.
 bool has_key(const std::vector<KeyInfo>& keys, const std::string& path) {
-  const auto words = [](const std::string& of) {
-    return std::pair(of.substr(0, of.find_first_of(".[")), of.substr(of.rfind('.') + 1));
-  };
-  const auto [first, last] = words(path);
+  const std::string first = path.substr(0, path.find('.')), last = path.substr(path.rfind('.') + 1);
   return std::any_of(keys.begin(), keys.end(), [&](const KeyInfo& key) {
-    const auto [table, word] = words(key.path);
-    return table == first && (first == path || word == last);
+    if (key.path.substr(0, key.path.find_first_of(".[")) != first) return false;
+    const std::string inside = key.path + ".";
+    return first == path || inside.find("." + last + ".") != std::string::npos ||
+           inside.find("." + last + "[") != std::string::npos;
   });
 }
 
