@@ -123,7 +123,7 @@ def disc(seed, rock, tension, young):
 
 
 def between_platens(seed, setting):
-    """The disc of Guo: flat platens of steel approach at 50 mm/s, 3,000 triangles at 1 mm."""
+    """The disc of Guo: flat platens of steel approach at 50 mm/s."""
     text = HEAD.format(seed=seed, rock=GUO_CONCRETE, end="2.5e-3") + PLATENS
     text += f'\n[[body]]\nname = "disc"\nshape = "disc"\nmaterial = "rock"\nradius = {GUO_DISC}\nmesh_size = {setting["edge"] * 1e-3 * (1 + 0.01 * ((seed + 2) % 5 - 2)):.6g}\njitter = 0.1\n'
     for name, sense in (("top", 1), ("bottom", -1)):
@@ -144,7 +144,7 @@ def case(test, setting, seed):
     return plate(seed, HD, 0, 225.0, 52e3) if setting["specimen"] == "plate" else disc(seed, HD, 9.2, 55e3)
 
 
-TESTS = {"granite": (GRANITE, 9), "hwangdeung": ([{"specimen": s} for s in HWANGDEUNG], 1), "wings": (WINGS, 1), "guo": ([{"edge": e} for e in (1.4, 1.0, 0.7)], 1)}  # settings, first seed
+TESTS = {"granite": (GRANITE, 9), "hwangdeung": ([{"specimen": s} for s in HWANGDEUNG], 1), "wings": (WINGS, 1), "guo": ([{"edge": 0.7}], 1)}  # settings, first seed
 RECORD = ["test", "setting", "seed", "commit", "device", "hash", "seconds", "quantity", "value"]
 
 
@@ -236,6 +236,11 @@ def markdown(records, test):
         first, strength = ([values[name][0] for values in found.values()] for name in ("first", "strength"))
         lines.append(f"| mean of {len(found)} | {spread(first, 1)}, **{100 * statistics.mean(first) / 7.0 - 100:+.0f} %** | "
                      f"{spread(strength, 1)}, **{100 * statistics.mean(strength) / 32.5 - 100:+.0f} %** |")
+    elif test == "guo":
+        lines = ["| edges, mm | n | first broken joint, MPa | largest 2P/(pi D t), MPa | over f_t | Guo, MPa | misfit |", "|---" * 7 + "|"]
+        for setting, values in found.items():
+            mean = statistics.mean(values["strength"])
+            lines.append(f"| {json.loads(setting)['edge']} | {len(values['strength'])} | {spread(values['first'], 2)} | {spread(values['strength'], 2)} | {mean / 3:.2f} | {GUO} | **{100 * mean / GUO - 100:+.0f} %** |")
     else:
         lines = ["| specimen | n | here, MPa | measured, MPa | misfit | HOSS |", "|---" * 6 + "|"]
         for setting, values in found.items():
