@@ -441,32 +441,6 @@ name = "far"
   EXPECT_TRUE(has(lost.text, "line 31, stage.only.wall.name = \"near\" is no wall")) << lost.text;
 }
 
-/// Its step comes from a small specimen, which a set in a corner of the body does not meet.
-TEST(Forecast, of_a_block_with_a_set_of_joints_in_a_corner_is_made) {
-  const char* const text = R"(breccia = 1
-method = "fdem3d"
-[time]
-end = "1 ms"
-[material.rock]
-[[body]]
-name = "block"
-material = "rock"
-size = ["2 m", "2 m", "2 m"]
-mesh_size = "0.25 m"
-[[joint_set]]
-name = "corner"
-min = ["0.6 m", "0.6 m", "0.6 m"]
-max = ["1 m", "1 m", "1 m"]
-number = 1
-radius = "0.1 m"
-)";
-  auto config = read_case<fdem3::Config>(CaseText{text, "block.toml"}, {});
-  const Forecast f = forecast(config, ".");
-  EXPECT_GT(f.steps, 0.0);
-  config.joint_sets.clear();
-  EXPECT_EQ(forecast(config, ".").step, f.step);
-}
-
 /// A table of another method is no slip of the pen: which method has it, what this one has instead,
 /// and nothing that --fix would write in its place.
 TEST(CheckCommand, tells_which_methods_have_a_key) {
