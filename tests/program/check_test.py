@@ -9,15 +9,16 @@ import unittest
 
 PROGRAM = os.environ["BRECCIA"]
 ATTACK = pathlib.Path(__file__).resolve().parents[1] / "attack"
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 
 
 class Check(unittest.TestCase):
-    def told(self, text):
+    def told(self, text, *options):
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(ATTACK / "pierced.inp", folder)
             path = pathlib.Path(folder) / "case.toml"
             path.write_text(text)
-            done = subprocess.run([PROGRAM, "check", path], capture_output=True, text=True)
+            done = subprocess.run([PROGRAM, "check", path, *options], capture_output=True, text=True)
             return done.returncode, done.stdout + done.stderr
 
     # Another fluid did nothing beside one that flows, and an explosive ended the program by a signal.
@@ -28,6 +29,21 @@ class Check(unittest.TestCase):
         code, words = self.told(before + 'name = "water"\nkind = "fluid"\nviscosity = 1e-3\n' + after)
         self.assertEqual(code, 2)
         self.assertIn("load.anfo.kind: a fluid that flows, as load.water, is the only fluid", words)
+
+    # Tetrahedra had no fluids.
+    def test_fluids_of_tetrahedra_obey_the_rules_of_triangles(self):
+        text = (CASES / "penny_fracture" / "small.toml").read_text()
+        self.assertEqual(self.told(text)[0], 0)
+        for line, problem in (
+            ('viscosity = "1e-6 Pa s"', 'load.water.rate: needs kind = "fluid" and a viscosity above 0'),
+            ('kind = "fluid"', "load.water.viscosity: only a fluid has one"),
+        ):
+            code, words = self.told(text.replace(line + "\n", ""))
+            self.assertEqual(code, 2)
+            self.assertIn(problem, words)
+        code, words = self.told(text.replace('radius = "0.26 m"\nviscosity', 'radius = "1 cm"\nviscosity'), "--model")
+        self.assertEqual(code, 2)
+        self.assertIn("load.water: its region holds corners, but no edge of any tetrahedron", words)
 
     # Such a mesh counted as one whose size is not known, which `check` does not build.
     def test_triangles_larger_than_their_body_are_built(self):

@@ -23,6 +23,7 @@ std::vector<Index> faces_in(const Model& model, const RegionConfig& config,
 
 std::vector<fdem_shared::Port> ports_in(const Model& model, const RegionConfig& config,
                                         const std::string& where) {
+  corners_in(model, config, where);
   const fdem_shared::Region<Shape, Model, RegionConfig> region(model, config, where);
   std::vector<fdem_shared::Port> ports;
   for (std::size_t t = 0; t < model.tetrahedron.size(); ++t) {
@@ -33,8 +34,9 @@ std::vector<fdem_shared::Port> ports_in(const Model& model, const RegionConfig& 
           ports.push_back(fdem_shared::port_between(corner[i], corner[k]));
   }
   if (ports.empty())
-    throw InputError(where + ": its region holds no edge of any tetrahedron, both ends of it" +
-                     region.nearest_corner());
+    throw InputError(where +
+                     ": its region holds corners, but no edge of any tetrahedron, through which a "
+                     "fluid comes; let it hold both ends of one");
   std::sort(ports.begin(), ports.end());
   ports.erase(std::unique(ports.begin(), ports.end()), ports.end());
   return ports;
