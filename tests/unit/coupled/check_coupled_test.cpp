@@ -235,6 +235,33 @@ TEST(CoupledCase, goes_through_stages_and_is_resumed_in_each) {
   }
 }
 
+/// A grain that a face pushes does not feel a stage that makes grains softer: contact with faces
+/// keeps its stiffness, and forces that are evaluated anew get it back.
+TEST(CoupledCase, keeps_what_faces_push_where_a_stage_changes_the_modulus_of_spheres) {
+  const auto speed = [](const std::string& change) {
+    std::string text = staged.substr(0, staged.find("[stage.spheres]"));
+    const std::size_t shape = text.find("shape = \"box\""), pack = text.find("pack = ");
+    text.replace(pack, text.find("velocity = ", pack) - pack, "");
+    text.replace(shape, std::string("shape = \"box\"").size(),
+                 "shape = \"element\"\nradius = 0.01");
+    text.replace(text.find("center = [0.0, 0.0, 0.0205]"), 27, "center = [0.001, 0.002, 0.00999]");
+    text.replace(text.find("size = [0.04, 0.04, 0.04]\n"), 26, "");
+    text.replace(text.find("gravity = "), std::string("gravity = [0.0, 0.0, -9.81e3]").size(), "");
+    const auto method = method_of(case_of_text(text + change, "both.toml", ".", {}));
+    run_stages(*method, 60);
+    EXPECT_EQ(method->stage().index, 0);
+    const double before = method->probes()[0];
+    run_stages(*method, 130);
+    EXPECT_EQ(method->stage().index, 1);
+    EXPECT_GT(method->probes()[0] - before, 0.1);  // the face pushes all the time
+    EXPECT_LT(method->energy().error_relative, 1e-4);
+    return method->probes()[0];
+  };
+  const double same = speed("");
+  EXPECT_NEAR(speed("[[stage.spheres.material]]\nname = \"grain\"\nyoung = \"5 GPa\"\n"), same,
+              1e-12 * std::abs(same));
+}
+
 /// Model that is left when the pile, or the block, is taken out, with and without bonds between
 /// them, goes on by itself; what was between them leaves with its energy.
 TEST(CoupledCase, takes_bodies_out_of_either_method) {
