@@ -1,5 +1,5 @@
 #pragma once
-// What acts between spheres and tetrahedra on ranks (docs/theory-coupled.md, 5): every rank holds
+// Forces between spheres and tetrahedra on ranks (docs/theory-coupled.md, 4): every rank holds
 // the lists of near faces, touches and bonds, and copies of all spheres and tetrahedra that these
 // lead to. All ranks evaluate all of it, with equal bits; each adds up for its own items.
 

@@ -66,7 +66,7 @@ Index count_of_all(const Domain& domain, Index here) {
   return static_cast<Index>(owned[0]);
 }
 
-/// What the items of all ranks have, in the order of their numbers.
+/// An array of the items of all ranks, in the order of their numbers.
 template <class T>
 Buffer<T> of_all(const Domain& domain, const Buffer<GlobalId>& ids, const Buffer<T>& items) {
   if (domain.single_rank()) return items;

@@ -8,7 +8,7 @@
 
 namespace breccia::fdem_shared {
 
-/// What flows out of a crack at its ports: q_i = sum over j of T_ij (p - p_j).
+/// Flow out of a crack at its ports: q_i = sum over j of T_ij (p - p_j).
 template <int ports>
 using Conductance = std::array<std::array<double, static_cast<std::size_t>(ports)>,
                                static_cast<std::size_t>(ports)>;

@@ -99,8 +99,8 @@ void list_pressures(World& part, const Cracks& cracks, const Cells& cells) {
         last < before.size() && before[last].number() == cracks[i].a && before[last].share > 0.0;
     const double pressure = cells[i].pressure();
     if (!(pressure > 0.0) && !was_wet) continue;
-    for (const Index side : {cracks[i].a, cracks[i].b})
-      part.fluid.wet.push_back(Side::of(side, flow.load, pressure));
+    const Index both[] = {cracks[i].a, cracks[i].b};
+    for (const Index side : both) part.fluid.wet.push_back(Side::of(side, flow.load, pressure));
   }
   part.fluid.border = flow.borders;
   for (Side& side : part.fluid.border) side.share = part.fluid.pressure;
@@ -155,8 +155,8 @@ bool spread_until(World& part, double now) {
   for (const auto& source : part.given->fluids)
     for (const auto& full : filled_cracks(cracks, source.ports, source.speed, now)) {
       filled.push_back(full.crack);
-      for (const Index side : {full.crack.a, full.crack.b})
-        wet.push_back(Side::of(side, source.load, full.share));
+      const Index both[] = {full.crack.a, full.crack.b};
+      for (const Index side : both) wet.push_back(Side::of(side, source.load, full.share));
     }
   part.fluid.time = now;
   const bool same =

@@ -1,5 +1,5 @@
 #pragma once
-// What a case gives of its fluids, and what a run keeps of them.
+// Data of a case about its fluids, and data that a run keeps of them.
 
 #include <cstdint>
 #include <vector>
@@ -59,7 +59,7 @@ struct FluidStateOf {
   double extent = 0.0;    ///< of cracks that a fluid that flows fills  [m; in space m2]
 };
 
-/// What a fluid has filled.
+/// The part of the cracks that a fluid has filled.
 struct FilledPart {
   double extent = 0.0;  ///< length, in space area  [m; in space m2]
   double volume = 0.0;  ///<  [m2; in space m3]

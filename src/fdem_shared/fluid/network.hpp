@@ -105,7 +105,7 @@ class Network {
     }
     return more;
   }
-  /// What comes into a crack at its ports.  [m2/s; in space m3/s]
+  /// Flow into a crack at its ports.  [m2/s; in space m3/s]
   Ports inflow(std::size_t i) const {
     Ports in{};
     for (std::size_t k = 0; k < ports; ++k)

@@ -1,5 +1,5 @@
 #pragma once
-// What ranks take over of a fluid from rank 0.
+// State of a fluid that ranks take over from rank 0.
 
 #include "domain/together.hpp"
 #include "exec/buffer.hpp"
