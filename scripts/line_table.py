@@ -66,7 +66,7 @@ READER = {
         ("**the method**: world, kernels, the laws of concrete links and contacts or of triangles, joints and couples, search, the step on the host",
          SHARED_METHOD.format(m="dem") + "dem/elements.hpp dem/element_kernels.hpp dem/pair_forces.hpp dem/link_sums.hpp dem/contacts.hpp dem/wall.hpp "
          "dem/laws/concrete_link.hpp dem/laws/concrete_parts.hpp dem/laws/contact.hpp dem/laws/pair_motion.hpp dem/laws/tension_softening.hpp dem/links/concrete.hpp "
-         "dem/links/link_set.hpp dem/links/all.hpp dem/stepping/add_links.hpp dem/search.cpp dem/near.hpp"),
+         "dem/links/link_set.hpp dem/links/all.hpp dem/push_of_links.hpp dem/stepping/add_links.hpp dem/search.cpp dem/near.hpp"),
         ("other laws: steel, interface, parallel bond, LDPM; joints that wake; what tetrahedra alone need of the search; fluid; bolts; walls with mass or a nose",
          "dem/laws/* dem/links/* dem/free_walls* dem/wall_*"),
         ("set-up, keys, stages, servos", "dem/setup/* dem/servos*"),
@@ -85,7 +85,7 @@ READER = {
         ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
         ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
         ("", "nothing"),
-        ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
+        ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/ghosts.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],
 }
 
