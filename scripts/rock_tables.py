@@ -22,6 +22,8 @@ import sys
 import time
 import tomllib
 
+from crack_networks import ends, network_from, networks
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASES, MATERIALS = ROOT / "cases", ROOT / "src/io/case/materials.toml"
 SEEDS = (1, 2, 3)
@@ -57,42 +59,6 @@ class Result:
         ends = self.summary["probe"][probe]
         return max(abs(ends["min"]), abs(ends["max"]))
 
-
-def networks(cracks):
-    """Groups of cracks that share ends."""
-    groups, at = {}, {}
-
-    def leader(i):
-        while groups[i] != i:
-            groups[i] = groups[groups[i]]
-            i = groups[i]
-        return i
-
-    for i, c in enumerate(cracks):
-        groups[i] = i
-        for end in ((c["x0"], c["y0"]), (c["x1"], c["y1"])):
-            key = (round(end[0] * 1e8), round(end[1] * 1e8))
-            if key in at:
-                groups[leader(i)] = leader(at[key])
-            at[key] = i
-    found = {}
-    for i, c in enumerate(cracks):
-        found.setdefault(leader(i), []).append(c)
-    return list(found.values())
-
-
-def ends(c):
-    return ((c["x0"], c["y0"]), (c["x1"], c["y1"]))
-
-
-def network_from(cracks, tip, reach):
-    """The largest group with an end near the tip of a notch."""
-    near = [n for n in networks(cracks)
-            if any(math.dist(e, tip) < reach for c in n for e in ends(c))]
-    return max(near, key=len, default=[])
-
-
-# ---------------------------------------------------------------- quantities
 
 def tension(r, setting):
     width, strength, energy = 0.05, 3e6, 10.0

@@ -17,7 +17,7 @@ struct BorderSphere {
   std::int32_t material;
   std::uint32_t fixed;
 };
-/// Likewise a tetrahedron.
+/// A tetrahedron as the owner sends it.
 struct BorderSolid {
   fdem3::TetrahedronNodes nodes;
   Index material;

@@ -30,7 +30,7 @@ struct LineCrack {
   double depth(int) const { return length; }
 };
 
-/// Likewise of faces: corner k is that of face b, edge k leads from it to the next one.
+/// Such a joint or face in space: corner k is that of face b, edge k leads from it to the next one.
 struct FaceCrack {
   static constexpr int ports = 3;
   Index a = 0, b = 0;       ///< its two faces, 4 tetrahedron + k; a < b  [-]
