@@ -31,6 +31,10 @@ std::string count_problem(const std::string& text) {
 
 laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) const {
   laboratory::Workers workers = laboratory::workers_for(jobs, runs, bytes, ranks);
+  if (const int wanted = std::min(jobs, static_cast<int>(runs)); workers.jobs < wanted)
+    tell_notes(
+        {fmt::format("--jobs {}: the memory that is free ({}) holds {} of these runs at a time",
+                     jobs, memory_text(available_memory()), workers.jobs)});
   if (ranks > 1 && !built_with_mpi())
     throw InputError("--ranks: this program has no MPI ('breccia doctor'); nothing was run");
   if (ranks > 1 && prepare::on_path("mpirun").empty() && std::getenv("BRECCIA_MPIRUN") == nullptr)
@@ -81,6 +85,14 @@ std::function<void(std::size_t, const laboratory::FinishedRun&)> tell_of(
     const std::vector<laboratory::PlannedRun>& runs) {
   const auto ended = std::make_shared<std::size_t>(0);
   return [ended, &runs](std::size_t run, const laboratory::FinishedRun& result) {
+    if (result.again_beside > 0) {
+      fmt::print("{}\n", harmless(fmt::format(
+                             "   later       no memory    {:>7.1f} s  {}: {}; {} at a "
+                             "time from here on",
+                             result.wall, runs[run].name, result.message, result.again_beside)));
+      std::fflush(stdout);
+      return;
+    }
     const std::string state = result.kept              ? "kept"
                               : result.exit_code == 0  ? "done"
                               : result.exit_code == 9  ? "check failed"

@@ -18,10 +18,11 @@ struct PlannedRun {
 
 /// Outcome of the run.
 struct FinishedRun {
-  int exit_code = 0;    ///< of the program; 9: done, but a check of the case failed
-  bool kept = false;    ///< was finished before; nothing was computed
-  double wall = 0.0;    ///< wall-clock time spent on it now  [s]
-  std::string message;  ///< the error, if it has failed
+  int exit_code = 0;     ///< of the program; 9: done, but a check of the case failed
+  bool kept = false;     ///< was finished before; nothing was computed
+  double wall = 0.0;     ///< wall-clock time spent on it now  [s]
+  std::string message;   ///< the error, if it has failed
+  int again_beside = 0;  ///< > 0: it lacked memory, and will run again, so many at a time
 
   /// Whether its numbers count.
   bool complete() const { return exit_code == 0 || exit_code == 9; }
@@ -53,7 +54,7 @@ struct Workers {
 /// How many runs fit beside each other: at most one rank a core and as many as the memory holds.
 /// Each rank has one thread, or its share of the cores if not every core has a rank.
 /// @param asked  runs at a time, of one thread each; 0: as many as fit
-/// @param bytes  of memory that the largest run takes
+/// @param bytes  of memory that the model of the largest run takes; each rank builds all of it
 /// @param ranks  of each run
 Workers workers_for(int asked, std::size_t runs, double bytes, int ranks = 1);
 
@@ -67,10 +68,14 @@ std::vector<Device> gpus_for(int there, int ranks, const std::string& visible);
 /// newest checkpoint; anything else there is computed anew. A failing run stops no other. What a
 /// run says goes to FOLDER.log beside its folder, which is removed when the run is complete.
 ///
+/// A run that ends for want of memory, or by SIGKILL, as others run beside it is made again, with
+/// fewer at a time from then on; one that was alone has failed.
+///
 /// SIGINT, SIGTERM and SIGUSR1 are handed to the runs, which save their states, and no further run
 /// begins; the runs that were not made have exit code 128 + the number of the signal.
 ///
-/// @param tell  called for each run as it ends: its number and what became of it
+/// @param tell  called for each run as it ends, and as it is put off for want of memory: its number
+///              and what became of it
 /// @throws IoError if a folder cannot be made or no process can be started
 std::vector<FinishedRun> run_side_by_side(
     const std::vector<PlannedRun>& runs, const Workers& workers,

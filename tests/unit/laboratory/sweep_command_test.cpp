@@ -9,6 +9,7 @@
 
 #include "io/whole_file.hpp"
 #include "laboratory/side_by_side.hpp"
+#include "run/machine/memory_plan.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -232,6 +233,59 @@ TEST(GpusForRuns, EachRunTakesTheOneWithTheFewestRuns) {
   const std::string both = said("c") + said("d");
   EXPECT_NE(both.find("--device cuda:0"), std::string::npos) << both;
   EXPECT_NE(both.find("2,3 run"), std::string::npos) << both;
+}
+
+/// Runs of a script that says "not enough memory", or is killed, as another one runs beside it.
+class RunsWithoutMemory : public testing::TestWithParam<std::string> {
+ protected:
+  std::vector<laboratory::FinishedRun> made(int jobs) {
+    const std::string lock = scratch / "lock";
+    replace_file(scratch / "program.sh", "#!/bin/sh\nif mkdir '" + lock +
+                                             "'; then sleep 0.3; rmdir '" + lock +
+                                             "'; exit 0; fi\n" + GetParam() + "\n");
+    fs::permissions(scratch / "program.sh", fs::perms::owner_all);
+    std::vector<laboratory::PlannedRun> runs;
+    for (const char* name : {"a", "b", "c", "d"})
+      runs.push_back({name, "case", {}, scratch / ("runs/" + std::string(name)), name});
+    laboratory::Workers workers;
+    workers.jobs = jobs;
+    workers.program = scratch / "program.sh";
+    return laboratory::run_side_by_side(runs, workers, [&](std::size_t, const auto& run) {
+      if (run.again_beside > 0)
+        put_off.push_back(run.again_beside);
+      else
+        ++ended;
+    });
+  }
+
+  ScratchFolder scratch;
+  std::vector<int> put_off;
+  int ended = 0;
+};
+
+TEST_P(RunsWithoutMemory, AreMadeAgainWithFewerAtATime) {
+  for (const laboratory::FinishedRun& run : made(3)) EXPECT_EQ(run.exit_code, 0) << run.message;
+  EXPECT_EQ(ended, 4);
+  ASSERT_FALSE(put_off.empty());
+  EXPECT_EQ(put_off.back(), 1);
+}
+
+TEST_P(RunsWithoutMemory, HaveFailedWhereTheyWereAlone) {
+  fs::create_directory(scratch / "lock");
+  for (const laboratory::FinishedRun& run : made(3)) EXPECT_NE(run.exit_code, 0);
+  EXPECT_EQ(ended, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RunsWithoutMemory,
+                         testing::Values("echo 'error: not enough memory'; exit 5", "kill -9 $$",
+                                         "exit 137"));
+
+TEST(WorkersFor, RanksTakeAWholeModelEach) {
+  const double bytes = available_memory() / 3.5;
+  EXPECT_EQ(laboratory::workers_for(4, 8, bytes).jobs, 3);
+  EXPECT_EQ(laboratory::workers_for(4, 8, bytes, 2).jobs, 1);
+  EXPECT_EQ(laboratory::workers_for(4, 8, bytes / 4.0, 2).jobs, 4);
+  EXPECT_EQ(laboratory::workers_for(100, 8, 0.0).jobs, 8);
 }
 
 TEST_F(SweepCommand, CommandsExplainThemselvesInLinesThatFillEightyColumns) {
