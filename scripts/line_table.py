@@ -25,7 +25,7 @@ PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("ledger, probes, hash, fragments, stress", 1575,
      "*/emission* */energy* */energies.hpp */observe* */observations.hpp */readings.hpp */probes* core/probe* core/quantity* core/state_hash* core/pieces* core/unsound* core/gauge* dem/stress*"),
     ("stages, servos, tables over time, fluid, walls with mass", 0,
-     "*/servos* */servo_forces.hpp */over_time.hpp */loaded_sides.hpp */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
+     "*/servos* */servo_forces.hpp */over_time.hpp */prescribed.hpp */loaded_sides.hpp */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
     ("state, kernels, step, set-up of the methods", 5498, "dem/* fdem/* fdem3/* fdem_shared/* coupled/* core/kernel* core/stepping* core/fields* core/world_space* "
      "core/planes* core/precision* core/region* core/read_only* core/set_up* core/on_host*"),
     ("plain execution: arrays, loops, sort, errors; vectors", 1287, "exec/* math/*"),
@@ -79,7 +79,7 @@ READER = {
         ("", SHARED_METHOD.format(m="fdem") + "fdem/shape.hpp fdem/triangles/* fdem/joints/joint* fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
          "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
          "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step* fdem_shared/host_run.hpp "
-         "fdem_shared/motion.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
+         "fdem_shared/motion.hpp fdem_shared/prescribed.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem_shared/insertion* fdem_shared/separated.hpp fdem/fluid/* fdem_shared/fluid/* fdem_shared/sides_now.hpp fdem/bolts/* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
         ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),

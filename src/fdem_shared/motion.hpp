@@ -8,15 +8,10 @@
 #include "core/drift.hpp"
 #include "core/kernel.hpp"
 #include "fdem_shared/columns.hpp"
+#include "fdem_shared/prescribed.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
-
-/// A velocity that follows a table of factors over time, here and now.
-template <class Vector>
-struct MotionNow {
-  Vector velocity;  ///< over the step to come  [m/s]
-};
 
 /// Against the velocity, as large as the force.
 BR_HD inline double opposed(double force, double velocity) {
@@ -88,7 +83,8 @@ struct KickOf {
     for (int k = 0; k < corners; ++k) {
       const int bits = h.fixed_at(k);
       if (bits == 0) continue;
-      const Vector given = h.motion[k] >= 0 ? motions[h.motion[k]].velocity : Vector{};
+      const Vector given =
+          h.motion[k] >= 0 ? motions[h.motion[k]].at(of.nodes.at[k].position, next_dt) : Vector{};
       r.velocity[k] = held_parts(bits, given, r.velocity[k]);
       r.damped[k] = held_parts(bits, Vector{}, r.damped[k]);  // what is held is not damped
     }

@@ -62,9 +62,15 @@ template <class World>
 void list_world_motions(World& w) {
   if (w.prescribed.empty()) return;
   std::vector<typename ShapeOf<World>::Motion> now;
-  const double middle = w.time + 0.5 * w.next_dt;
-  for (const auto& p : w.prescribed) now.push_back({p.at(middle)});
+  for (const auto& p : w.prescribed) now.push_back(p.now(w.time, w.next_dt));
   copy_to(w.motions, now);
+}
+
+/// Whether a support turns what it holds: the host tells in each step where its axis is.
+template <class World>
+bool turns_anything(const World& w) {
+  return std::any_of(w.prescribed.begin(), w.prescribed.end(),
+                     [](const auto& p) { return p.turns(); });
 }
 
 template <class World>

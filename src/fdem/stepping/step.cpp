@@ -66,8 +66,9 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  if (!w.given->flow.on && w.given->bolts.empty()) return advance_by_steps(w, stop);
-  step(w);  // places of cracks and bolts come to the host in every step, on a device, too
+  if (!w.given->flow.on && w.given->bolts.empty() && !fdem_shared::turns_anything(w))
+    return advance_by_steps(w, stop);
+  step(w);  // places of cracks, bolts and axes are of the host in every step, on a device, too
   return {1, w.last_dt, w.last_dt};
 }
 

@@ -71,8 +71,8 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  if (!w.given->flow.on) return advance_by_steps(w, stop);
-  step(w);  // places of cracks come to the host in every step, on a device, too
+  if (!w.given->flow.on && !fdem_shared::turns_anything(w)) return advance_by_steps(w, stop);
+  step(w);  // places of cracks and axes are of the host in every step, on a device, too
   return {1, w.last_dt, w.last_dt};
 }
 

@@ -10,6 +10,7 @@
 #include "core/servo.hpp"
 #include "core/stages.hpp"
 #include "core/table_over_time.hpp"
+#include "fdem_shared/prescribed.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
@@ -62,7 +63,9 @@ struct SupportConfigOf {
   std::vector<std::string> fix = directions_of<Vector>();
   OverTime<Vector> velocity;  ///<  [m/s]
   HistoryConfig history;
-  SupportServoConfig servo;  ///< instead of the velocity along its axis
+  SupportServoConfig servo;         ///< instead of the velocity along its axis
+  OverTime<SpinOf<Vector>> spin{};  ///<  [rad/s]
+  Vector point{};                   ///< of the axis; where a stage begins: at that time  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -78,6 +81,15 @@ struct SupportConfigOf {
               "time, linear in between and constant beyond its ends"
             : "prescribed velocity of these directions, or a table [[t, x, y, z], ...] of it over "
               "time, linear in between and constant beyond its ends");
+    key("spin", spin, "rad/s", Range{-1e6, 1e6},
+        plane ? "how fast it turns about point, anticlockwise, or a table [[t, w], ...] of it over "
+                "time; it must fix x and y"
+              : "how fast it turns about an axis through point, or a table [[t, x, y, z], ...] of "
+                "it over time; it must fix the directions across the axis");
+    key("point", point, "m", any_number,
+        plane ? "about which spin turns it at the start; it goes along with velocity"
+              : "a point of the axis about which spin turns it, at the start; it goes along with "
+                "velocity");
     history.each_key(key);
     key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
   }
@@ -91,6 +103,8 @@ struct SupportChangeOf {
   OverTime<Vector> velocity;  ///<  [m/s]
   double ramp = 0.0;          ///<  [s]
   SupportServoConfig servo;
+  OverTime<SpinOf<Vector>> spin{};                                    ///<  [rad/s]
+  Vector point = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -102,8 +116,14 @@ struct SupportChangeOf {
     key("velocity", velocity, "m/s", any_number,
         "their velocity from now on, or a table of it over time since the stage began; left out: "
         "they stand still");
+    key("spin", spin, "rad/s", Range{-1e6, 1e6},
+        "how fast it turns from now on, or a table of it over time since the stage began; left "
+        "out: it does not turn");
+    key("point", point, "m", any_number,
+        "a point of the axis of its turn, as the stage begins; left out: where its velocity has "
+        "brought the one of before");
     key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which it grows from zero, linearly");
+        "time since the stage began in which both grow from zero, linearly");
     key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
   }
 };

@@ -15,7 +15,9 @@ AmplitudeOf<Vector> amplitudes(const OverTime<Value>& quantity, const History& h
       return scaled_amplitude(quantity, axis, history.ramp, history.begin).amplitude;
     return {history.ramp, history.begin, history.times, history.factors};
   };
-  if constexpr (std::is_same_v<Vector, Vec2>)
+  if constexpr (std::is_same_v<Vector, double>)
+    return {along(0)};
+  else if constexpr (std::is_same_v<Vector, Vec2>)
     return {along(0), along(1)};
   else
     return {along(0), along(1), along(2)};
@@ -25,6 +27,32 @@ AmplitudeOf<Vector> amplitudes(const OverTime<Value>& quantity, const History& h
 template <class Vector>
 Vector scale_of(const OverTime<Vector>& quantity) {
   return quantity.is_table() ? from_space<Vector>({1.0, 1.0, 1.0}) : quantity.value;
+}
+
+inline double scale_of(const OverTime<double>& quantity) {
+  return quantity.is_table() ? 1.0 : quantity.value;
+}
+
+/// Bits of the directions that a support prescribes: x, y, z.
+template <class Support>
+int fixed_directions(const Support& support) {
+  int bits = 0;
+  for (const std::string& direction : support.fix)
+    bits |= direction == "x" ? 1 : direction == "y" ? 2 : 4;
+  return bits;
+}
+
+/// The motion that a support prescribes as its keys say: without its servo.
+template <class Vector, class Support>
+PrescribedMotionOf<Vector> motion_of(const Support& support) {
+  const int bits = fixed_directions(support);
+  PrescribedMotionOf<Vector> motion{held_parts(bits, scale_of(support.velocity), Vector{}),
+                                    amplitudes<Vector>(support.velocity, support.history),
+                                    support.point};
+  if (bits == 0) return motion;
+  motion.spin = scale_of(support.spin);
+  motion.spin_over = amplitudes<SpinOf<Vector>>(support.spin, support.history);
+  return motion;
 }
 
 /// How a load changes over time, by the quantity that its kind asks for.

@@ -8,6 +8,7 @@
 #include "core/named.hpp"
 #include "core/stages.hpp"
 #include "fdem_shared/setup/config.hpp"
+#include "fdem_shared/setup/over_time.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -24,8 +25,11 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
   }
   for (const auto& change : stage.supports)
     if (auto* const s = find_named(config.supports, change.name)) {
+      using Vector = std::remove_cvref_t<decltype(s->point)>;
+      s->point = change.point.x < no_limit ? change.point : motion_of<Vector>(*s).point_at(begin);
       if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
       s->velocity = change.velocity;
+      s->spin = change.spin;
       s->history = {change.ramp, {}, {}, begin};
       s->servo = change.servo;
     }
@@ -77,6 +81,47 @@ void add_servo_problems(const Config& now, const std::string& stage, const char*
   }
 }
 
+/// The largest spin along x, y and z that a support has at any time.  [rad/s]
+inline Vec3 largest_spin(const OverTime<double>& spin) {
+  double most = std::abs(spin.value);
+  for (const double w : spin.values) most = std::max(most, std::abs(w));
+  return {0.0, 0.0, most};
+}
+inline Vec3 largest_spin(const OverTime<Vec3>& spin) {
+  Vec3 most{};
+  const auto add = [&](const Vec3& w) {
+    for (int k = 0; k < 3; ++k)
+      part_of(most, k) = std::max(part_of(most, k), std::abs(part_of(w, k)));
+  };
+  add(spin.value);
+  for (const Vec3& w : spin.values) add(w);
+  return most;
+}
+
+/// Problems of the turns of supports of a case as it is in a stage: a turn moves corners across its
+/// axis, which the support must fix and no servo must lead.
+template <class Config>
+void add_turn_problems(const Config& now, const std::string& stage,
+                       std::vector<std::string>& problems) {
+  const std::vector<std::string> words{"x", "y", "z"};
+  for (const auto& s : now.supports) {
+    const Vec3 spin = largest_spin(s.spin);
+    for (int k = 0; k < 3; ++k) {
+      const std::string& word = words[at(k)];
+      Vec3 across = spin;
+      part_of(across, k) = 0.0;
+      if (!(norm(across) > 0.0) || s.fix.empty()) continue;
+      const bool fixed = std::find(s.fix.begin(), s.fix.end(), word) != s.fix.end();
+      if (!fixed)
+        problems.push_back(stage + "support." + s.name + ".spin moves what it holds along " + word +
+                           ", which it does not fix");
+      if (s.servo.is_on() && s.servo.axis == word)
+        problems.push_back(stage + "support." + s.name +
+                           ".spin: its servo moves the axis aside, along " + word);
+    }
+  }
+}
+
 /// Problems of one stage by itself.
 /// @param directions  of the method: x, y, z
 template <class Config, class Stage>
@@ -125,7 +170,9 @@ std::vector<std::string> problems_of_stages(const Config& config,
   for (std::size_t k = 0; k < std::max<std::size_t>(config.stages.size(), 1); ++k) {
     progress.index = static_cast<std::int32_t>(k);
     const std::string stage = config.stages.empty() ? "" : "stage." + config.stages[k].name + ": ";
-    add_servo_problems(config_at(config, progress), stage, area, problems);
+    const Config now = config_at(config, progress);
+    add_servo_problems(now, stage, area, problems);
+    add_turn_problems(now, stage, problems);
   }
   return problems;
 }

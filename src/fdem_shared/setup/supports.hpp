@@ -30,21 +30,13 @@ void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Inde
     const Hold& h = holds[at(hold[t])];
     for (int k = 0; k < Shape::corners; ++k) {
       auto& velocity = nodes[t].at[k].velocity;
-      const auto given =
-          h.motion[k] >= 0 ? w.prescribed[at(h.motion[k])].at(0.0) : typename Shape::Vector{};
+      const auto given = h.motion[k] >= 0 ? w.prescribed[at(h.motion[k])].now(0.0, 0.0).at(
+                                                nodes[t].at[k].position, 0.0)
+                                          : typename Shape::Vector{};
       velocity = held_parts(h.fixed >> (Shape::dimension * k), given, velocity);
     }
   }
   copy_to(Shape::elements(w).nodes, nodes);
-}
-
-/// Bits of the directions that a support prescribes: x, y, z.
-template <class Support>
-int fixed_directions(const Support& support) {
-  int bits = 0;
-  for (const std::string& direction : support.fix)
-    bits |= direction == "x" ? 1 : direction == "y" ? 2 : 4;
-  return bits;
 }
 
 /// A support holds a corner.
@@ -82,13 +74,14 @@ void prescribe_supports(World& w, const Config& config, std::vector<Hold>& holds
   for (std::size_t s = 0; s < config.supports.size(); ++s) {
     const auto& support = config.supports[s];
     const int bits = fixed_directions(support);
-    const Vector velocity = held_parts(bits, scale_of(support.velocity), Vector{});
+    const PrescribedMotionOf<Vector> prescribed = motion_of<Vector>(support);
     std::int16_t motion = -1;
-    if (norm(velocity) > 0.0 || (support.servo.is_on() && bits != 0)) {
+    if (norm(prescribed.velocity) > 0.0 || prescribed.turns() ||
+        (support.servo.is_on() && bits != 0)) {
       motion = static_cast<std::int16_t>(w.prescribed.size());
       if (support.servo.is_on())
         w.servo_motions.push_back({s, motion, support.servo.axis_number()});
-      w.prescribed.push_back({velocity, amplitudes<Vector>(support.velocity, support.history)});
+      w.prescribed.push_back(prescribed);
     }
     if (bits == 0) continue;  // it lets go
     for (const Index n : w.given->sets[bodies + s].nodes) {
