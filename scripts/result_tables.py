@@ -2,7 +2,7 @@
 """Writes the tables of the pages on validation and speed from docs/results: result_tables.py [--check].
 
 Between <!-- results: NAME ARGUMENT --> and <!-- end of results --> a page holds what this script makes of docs/results/NAME.csv (of `speed`: of
-bench/results as well). With --check
+bench/results as well; of `misfits`: of the other tables). With --check
 nothing is written, and the exit code is 1 if a page is not what its results give. How the files were made: docs/results/README.md.
 """
 import argparse
@@ -19,6 +19,7 @@ import impact_tables
 import ldpm_tables
 import library_tables
 import localisation
+import misfit_table
 import published_tests
 import reinforced_tests
 import rock_experiments
@@ -116,6 +117,7 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "experiments": lambda test: rock_experiments.markdown(lines_of("rock_experiments"), test),
           "calibrations": lambda which: rock_library.calibration_table(lines_of("calibrations"), which),
           "rocks": lambda which: rock_library.recovery_table(lines_of("rocks"), which),
+          "misfits": lambda _: misfit_table.markdown(lambda name, what: MAKERS[name](what)),
           "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 
@@ -135,7 +137,7 @@ def main():
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
     tables, stale = 0, []
-    for page in [*sorted((ROOT / "docs").glob("*.md")), ROOT / "cases/rc_slab/README.md"]:
+    for page in [*sorted((ROOT / "docs").glob("*.md")), ROOT / "cases/rc_slab/README.md", ROOT / "README.md"]:
         text = page.read_text()
         made = remade(text, page.name)
         tables += len(PLACE.findall(text))
