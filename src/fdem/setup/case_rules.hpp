@@ -144,7 +144,23 @@ class CaseRules {
       check_one_table("load." + l.name + ".pressure", l.pressure, l.history);
       check_one_table("load." + l.name + ".traction", l.traction, l.history);
       check_one_table("load." + l.name + ".force", l.force, l.history);
+      if (!l.dug_by.empty()) check_dug("load." + l.name + ".dug_by", l);
     }
+  }
+
+  template <class Load>
+  void check_dug(const std::string& where, const Load& load) {
+    const auto stage = std::find_if(config_.stages.begin(), config_.stages.end(),
+                                    [&](const auto& each) { return each.name == load.dug_by; });
+    if (stage == config_.stages.end())
+      add(where + " = \"" + load.dug_by +
+          "\" is no stage; there are: " + listed_names(config_.stages));
+    else if (stage->remove.empty())
+      add(where + " = \"" + load.dug_by +
+          "\": that stage takes no body out, and lays nothing bare");
+    if (load.kind == "fluid" || load.kind == "absorbing")
+      add(where + ": pressure, traction and force act on what a stage lays bare; kind \"" +
+          load.kind + "\" on the border at the start alone");
   }
 
   void check_probes() {

@@ -54,7 +54,9 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (kind == LoadKind::fluid)
       set_up(w).fluids.push_back({{index, load.speed, ports(load.region, "load." + load.name)}});
     const std::vector<Index> edges =
-        edges_in(model, load.region, "load." + load.name, kind != LoadKind::fluid || load.is_gas());
+        edges_in(model, load.region, "load." + load.name,
+                 fdem_shared::laid_bare_by(config, load.dug_by, model.groups),
+                 kind != LoadKind::fluid || load.is_gas());
     for (const Index edge : edges) {
       const auto t = at(edge / 3), k = at(edge % 3);
       const auto material = static_cast<std::size_t>(model.material[t]);

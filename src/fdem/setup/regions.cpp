@@ -14,12 +14,16 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& config,
 }
 
 std::vector<Index> edges_in(const Model& model, const RegionConfig& config,
-                            const std::string& where, bool needed) {
+                            const std::string& where, const fdem_shared::LaidBare& bare,
+                            bool needed) {
   const fdem_shared::Region<Shape, Model, RegionConfig> region(model, config, where);
+  const auto group = [&](Index edge) { return at(model.group[at(edge / 3)]); };
   std::vector<Index> edges;
-  for (const MeshEdge& e : mesh_edges(model))
-    if (e.b < 0 && region.takes_side(at(e.a / 3), {e.low, e.high})) edges.push_back(e.a);
-  if (edges.empty() && needed) throw InputError(where + ": its region holds no edge on the border");
+  for (const MeshEdge& e : mesh_edges(model)) {
+    const Index own = bare.side(e.a, e.b, group);
+    if (own >= 0 && region.takes_side(at(own / 3), {e.low, e.high})) edges.push_back(own);
+  }
+  if (edges.empty() && needed) throw InputError(bare.none_of(where, "edge"));
   std::sort(edges.begin(), edges.end());
   return edges;
 }

@@ -6,6 +6,7 @@
 
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/model.hpp"
+#include "fdem_shared/setup/removal.hpp"
 
 namespace breccia::fdem {
 
@@ -14,11 +15,12 @@ namespace breccia::fdem {
 std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
                               const std::string& where);
 
-/// Edges 3 t + k on the border of the mesh with both ends in a region.
+/// Edges 3 t + k with both ends in a region: on the border of the mesh, or laid bare by a stage.
 /// @param needed  whether there must be some
 /// @throws InputError as corners_in(); for no edges only if some are needed
 std::vector<Index> edges_in(const Model& model, const RegionConfig& region,
-                            const std::string& where, bool needed = true);
+                            const std::string& where, const fdem_shared::LaidBare& bare,
+                            bool needed);
 
 /// Vertices in a region. @throws InputError as corners_in()
 std::vector<Index> vertices_in(const Model& model, const RegionConfig& region,

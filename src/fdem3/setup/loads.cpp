@@ -41,7 +41,10 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (is_fluid)
       set_up(w).fluids.push_back(
           {static_cast<std::int16_t>(l), load.speed, ports(load.region, "load." + load.name)});
-    for (const Index face : faces_in(model, load.region, "load." + load.name, !is_fluid)) {
+    const std::vector<Index> faces =
+        faces_in(model, load.region, "load." + load.name,
+                 fdem_shared::laid_bare_by(config, load.dug_by, model.groups), !is_fluid);
+    for (const Index face : faces) {
       const auto t = at(face / 4);
       const auto material = static_cast<std::size_t>(model.material[t]);
       const double density = config.materials[material].density;

@@ -12,12 +12,16 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& config,
 }
 
 std::vector<Index> faces_in(const Model& model, const RegionConfig& config,
-                            const std::string& where, bool needed) {
+                            const std::string& where, const fdem_shared::LaidBare& bare,
+                            bool needed) {
   const fdem_shared::Region<Shape, Model, RegionConfig> region(model, config, where);
+  const auto group = [&](Index face) { return at(model.group[at(face / 4)]); };
   std::vector<Index> faces;
-  for (const MeshFace& f : mesh_faces(model))
-    if (f.b < 0 && region.takes_side(at(f.a / 4), f.corners)) faces.push_back(f.a);
-  if (faces.empty() && needed) throw InputError(where + ": its region holds no face on the border");
+  for (const MeshFace& f : mesh_faces(model)) {
+    const Index own = bare.side(f.a, f.b, group);
+    if (own >= 0 && region.takes_side(at(own / 4), f.corners)) faces.push_back(own);
+  }
+  if (faces.empty() && needed) throw InputError(bare.none_of(where, "face"));
   return faces;
 }
 

@@ -7,6 +7,7 @@
 #include "fdem3/setup/config.hpp"
 #include "fdem3/setup/model.hpp"
 #include "fdem_shared/fluid/cracks.hpp"
+#include "fdem_shared/setup/removal.hpp"
 
 namespace breccia::fdem3 {
 
@@ -15,10 +16,11 @@ namespace breccia::fdem3 {
 std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
                               const std::string& where);
 
-/// Faces 4 t + k on the border of the mesh with all corners in a region.
+/// Faces 4 t + k with all corners in a region: on the border of the mesh, or laid bare by a stage.
 /// @throws InputError likewise, if any are needed
 std::vector<Index> faces_in(const Model& model, const RegionConfig& region,
-                            const std::string& where, bool needed = true);
+                            const std::string& where, const fdem_shared::LaidBare& bare,
+                            bool needed);
 
 /// Edges of tetrahedra with both ends in a region, ascending. @throws InputError likewise
 std::vector<fdem_shared::Port> ports_in(const Model& model, const RegionConfig& region,

@@ -138,6 +138,11 @@ struct LoadConfigOf {
   OverTime<Vector> traction;  ///<  [Pa]
   OverTime<Vector> force;     ///<  [N; in 2D N/m]
   HistoryConfig history;
+  std::string dug_by;  ///< a stage; empty: sides on the border at the start
+  bool dug = false;    ///< no key: that stage has begun
+
+  /// Whether its sides bear it by now.
+  bool acts() const { return dug_by.empty() || dug; }
 
  protected:
   template <class Visit>
@@ -145,6 +150,12 @@ struct LoadConfigOf {
     key("name", name, "name of the load");
     key.required("name");
     region.each_key(key);
+    key("dug_by", dug_by,
+        std::is_same_v<Vector, Vec2>
+            ? "stage that takes bodies out: the load acts on the edges that this lays bare, from "
+              "then on; empty: on those on the border at the start"
+            : "stage that takes bodies out: the load acts on the faces that this lays bare, from "
+              "then on; empty: on those on the border at the start");
   }
   template <class Visit>
   void keys_of_size(Visit&& key) {

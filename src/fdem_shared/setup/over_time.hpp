@@ -75,9 +75,12 @@ void prescribe_loads(World& w, const Config& config) {
   for (const auto& load : config.loads) {
     const LoadKind kind = load_kind(load.kind);
     given.load_names.push_back(load.name);
-    given.loads.push_back({kind, from_space<Vector>({1.0, 1.0, 1.0}),
-                           load.pressure.is_table() ? 1.0 : load.pressure.value,
-                           scale_of(load.traction), scale_of(load.force)});
+    given.loads.push_back({kind, from_space<Vector>({1.0, 1.0, 1.0}), 0.0, {}, {}});
+    if (load.acts()) {
+      given.loads.back().pressure = scale_of(load.pressure);
+      given.loads.back().traction = scale_of(load.traction);
+      given.loads.back().force = scale_of(load.force);
+    }
     given.load_amplitudes.push_back(load_amplitude<Vector>(load, kind));
   }
 }

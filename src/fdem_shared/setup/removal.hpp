@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/on_host.hpp"
+#include "exec/error.hpp"
 #include "fdem_shared/setup/writable.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -32,6 +33,44 @@ auto removable_bodies(const Config& config, const Model& model) {
       own.erase(std::unique(own.begin(), own.end()), own.end());
     }
   return bodies;
+}
+
+/// Sides that a stage lays bare by the bodies that it takes out.
+struct LaidBare {
+  std::string stage;                      ///< empty: none; the border at the start counts
+  std::vector<std::uint8_t> taken, gone;  ///< of each body: by this stage, and by its end
+
+  /// The one of two sides that lie on each other that a load acts on, -1: none.
+  /// @param a, b  sides, b -1: none  @param group  group(side): its body
+  template <class Group>
+  Index side(Index a, Index b, const Group& group) const {
+    if (stage.empty()) return b < 0 ? a : -1;
+    if (b < 0) return -1;
+    if (taken[group(b)] != 0 && gone[group(a)] == 0) return a;
+    return taken[group(a)] != 0 && gone[group(b)] == 0 ? b : -1;
+  }
+  /// Why a region takes none. @param sides  "edge", "face"
+  std::string none_of(const std::string& where, const std::string& sides) const {
+    if (stage.empty()) return where + ": its region holds no " + sides + " on the border";
+    return where + ": its region holds no " + sides + " that stage." + stage + " lays bare";
+  }
+};
+/// @throws InputError where there is no such stage
+template <class Config>
+LaidBare laid_bare_by(const Config& config, const std::string& name,
+                      const std::vector<std::string>& bodies) {
+  LaidBare bare{name, std::vector<std::uint8_t>(bodies.size(), 0), {}};
+  bare.gone = bare.taken;
+  if (name.empty()) return bare;
+  for (const auto& stage : config.stages) {
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (std::count(stage.remove.begin(), stage.remove.end(), bodies[b]) > 0) {
+        bare.gone[b] = 1;
+        if (stage.name == name) bare.taken[b] = 1;
+      }
+    if (stage.name == name) return bare;
+  }
+  throw InputError("there is no stage." + name);
 }
 
 /// Of each body whether it is gone in this stage.

@@ -33,6 +33,11 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
       s->history = {change.ramp, {}, {}, begin};
       s->servo = change.servo;
     }
+  for (auto& load : config.loads)
+    if (load.dug_by == stage.name && !load.dug_by.empty()) {
+      load.dug = true;
+      load.history.begin = begin;
+    }
   for (const auto& change : stage.loads)
     if (auto* const load = find_named(config.loads, change.name)) {
       load->pressure = change.pressure;

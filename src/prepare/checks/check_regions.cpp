@@ -272,6 +272,21 @@ void add_idle_cuts(const dem::BodyConfig& body, std::vector<std::string>& proble
   }
 }
 
+/// The problem of a load whose region meets no body that its stage takes out; empty: there is none.
+template <class Config, class Load>
+std::string problem_of_dug(const Config& config, const Load& load,
+                           const std::vector<Outline>& outlines) {
+  const auto* const stage = load.dug_by.empty() ? nullptr : item_named(config.stages, load.dug_by);
+  if (stage == nullptr) return "";
+  std::vector<Outline> taken;
+  for (Outline outline : outlines) {
+    if (std::count(stage->remove.begin(), stage->remove.end(), outline.name) == 0) continue;
+    outline.in_another = false;
+    taken.push_back(outline);
+  }
+  return problem_of("load." + load.name, bounds_of(load.region), "", taken);
+}
+
 /// Supports and loads of meshes, bolts and sets of joints of plane ones.
 template <class Config>
 void check_faces_and_corners(const Config& config, const std::string* folder) {
@@ -279,9 +294,11 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
   std::vector<std::string> problems;
   for (const auto& s : config.supports)
     problems.push_back(problem_of("support." + s.name, bounds_of(s.region), s.region.on, outlines));
-  for (const auto& load : config.loads)
+  for (const auto& load : config.loads) {
     problems.push_back(
         problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
+    if (problems.back().empty()) problems.back() = problem_of_dug(config, load, outlines);
+  }
   if constexpr (requires { config.bolts; })
     for (const auto& bolt : config.bolts)
       for (const Vec2& point : fdem::corners_of(bolt))
@@ -413,6 +430,7 @@ std::vector<std::string> narrow_regions(const Config& config, const std::string&
   const std::vector<Outline> outlines = outlines_of(config, &folder);
   std::vector<std::string> doubts;
   for (const auto& load : config.loads) {
+    if (!load.dug_by.empty()) continue;
     const Bounds region = bounds_of(load.region);
     std::string narrow;
     bool wide = false;
@@ -421,6 +439,8 @@ std::vector<std::string> narrow_regions(const Config& config, const std::string&
       if (!load.region.on.empty() && outline.name != load.region.on) continue;
       const double edge = config.bodies[i].mesh_size;
       wide = wide || !outline.bounds || !(edge > 0.0);
+      if constexpr (requires { config.bodies[i].is_turned(); })
+        wide = wide || config.bodies[i].is_turned();  // its sides lie aslant
       if (wide || gap(region, *outline.bounds).first > 1e-9) continue;
       wide = holds_an_edge(region, *outline.bounds, edge, dimension);
       narrow = fmt::format(
