@@ -24,11 +24,25 @@ struct NodeSet {
   std::vector<Index> nodes;  ///< 4 tetrahedron + corner, ascending, in the whole mesh  [-]
 };
 
+/// Stiffness of transversely isotropic rock: 1 and 2 along its planes, 3 across them.
+struct SolidModuli {
+  double c11 = 0.0, c12 = 0.0, c13 = 0.0, c33 = 0.0, c44 = 0.0;  ///<  [Pa]
+};
+
 /// A material with its joints, as waves and loads meet it.
 struct EffectiveRock {
   std::string material;
   double young, poisson;  ///<  [Pa], [-]
-  double fast, slow;      ///< waves of pressure and of shear  [m/s]
+  double fast, slow;      ///< waves of pressure and of shear; of bedded rock along its planes [m/s]
+  double density = 0.0;   ///<  [kg/m3]
+  SolidModuli stiffness{};  ///< of bedded rock, with its joints  [Pa]
+  Vec3 across{};            ///< its planes; 0: it has none  [-]
+
+  /// Impedances of a face that waves press and shear: rho c_p and rho c_s along its normal.
+  struct Impedances {
+    double pressing, shearing;  ///<  [Pa s/m]
+  };
+  Impedances on(const Vec3& normal) const;
 };
 
 /// Of a fluid; its ports are edges.
@@ -46,6 +60,7 @@ struct Case {
   double mean_edge = 0.0;      ///<  [m]
   double skin = 0.0;           ///< margin of the search between two at rest  [m]
   bool extrinsic = false;      ///< some joints are dormant, or were
+  bool bedded = false;         ///< some rock is stiffer in one direction than in others
   MoreFields shown;            ///< in frames
   EmissionConfig emission;     ///< which breaks are one event
   Index materials = 0;         ///< how many there are  [-]

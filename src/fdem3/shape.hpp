@@ -76,7 +76,7 @@ struct Shape {
   /// A vertex has about six corners on the side of a body, and (lambda + 2 mu) times the size of an
   /// element as stiffness.  [N/m]
   BR_HD static double corner_stiffness(const ElasticTetrahedron& law, const ShapeGradients& shape) {
-    return (law.lambda + 2.0 * law.shear) * 100.0 * near_reach(shape) / 6.0;
+    return (law.bound_lambda() + 2.0 * law.bound_shear()) * 100.0 * near_reach(shape) / 6.0;
   }
   /// Of a face against another, 4/3 1.366 p A (elements/stable_step.hpp), for each corner of a
   /// body; A is at most the square of the size of an element.  [N/m]

@@ -5,21 +5,14 @@
 #include "exec/error.hpp"
 
 namespace breccia::fdem {
-namespace {
 
-/// Moduli across the planes, those that are left out filled in.
-struct Across {
-  double young, poisson, shear;
-};
-Across across_of(const MaterialConfig& m) {
+AcrossPlanes across_planes(const MaterialConfig& m) {
   const BeddingConfig& b = m.bedding;
-  Across a{b.young > 0.0 ? b.young : m.young, b.poisson, b.shear};
+  AcrossPlanes a{b.young > 0.0 ? b.young : m.young, b.poisson, b.shear};
   if (!(a.poisson > -1.0)) a.poisson = m.poisson * a.young / m.young;
   if (!(a.shear > 0.0)) a.shear = 1.0 / (1.0 / m.young + 1.0 / a.young + 2.0 * a.poisson / a.young);
   return a;
 }
-
-}  // namespace
 
 PlaneModuli PlaneModuli::inverted() const {
   const double over = 1.0 / (c11 * c22 - c12 * c12);
@@ -31,23 +24,26 @@ bool PlaneModuli::is_positive() const {
 
 PlaneModuli compliance_of(const MaterialConfig& material, bool plane_stress) {
   const double young = material.young, nu = material.poisson;
-  const Across a = across_of(material);
+  const AcrossPlanes a = across_planes(material);
   if (plane_stress) return {1.0 / young, 1.0 / a.young, -a.poisson / a.young, 1.0 / a.shear};
   return {(1.0 - nu * nu) / young,
           1.0 / a.young - a.poisson * a.poisson * young / (a.young * a.young),
           -a.poisson * (1.0 + nu) / a.young, 1.0 / a.shear};
 }
 
-ElasticTriangle bedded_law(const MaterialConfig& material, bool plane_stress) {
-  // In all directions of space, whichever plane problem is computed.
-  const PlaneModuli solid = compliance_of(material, false);
-  const PlaneModuli compliance = compliance_of(material, plane_stress);
-  if (!solid.is_positive() || !compliance.is_positive())
+void refuse_impossible_bedding(const MaterialConfig& material) {
+  // In all directions of space, whichever problem is computed.
+  if (!compliance_of(material, false).is_positive() || !compliance_of(material, true).is_positive())
     throw InputError(
         "material." + material.name +
         ".bedding: no rock has these moduli: 2 poisson'^2 young must be below young' "
         "(1 - poisson), of young', poisson' and shear' across its planes, which must be "
         "above 0");
+}
+
+ElasticTriangle bedded_law(const MaterialConfig& material, bool plane_stress) {
+  refuse_impossible_bedding(material);
+  const PlaneModuli compliance = compliance_of(material, plane_stress);
   const PlaneModuli c = compliance.inverted();
   ElasticTriangle law{};
   law.shear = c.c66;
@@ -59,7 +55,7 @@ ElasticTriangle bedded_law(const MaterialConfig& material, bool plane_stress) {
 }
 
 OutOfPlane out_of_plane_of(const MaterialConfig& material) {
-  const Across a = across_of(material);
+  const AcrossPlanes a = across_planes(material);
   return {material.poisson, a.poisson * material.young / a.young};
 }
 

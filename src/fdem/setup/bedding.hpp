@@ -15,6 +15,14 @@ struct PlaneModuli {
   bool is_positive() const;
 };
 
+/// Moduli across its planes, those that are left out filled in.
+struct AcrossPlanes {
+  double young, poisson, shear;  ///< E', nu', G'  [Pa], [-], [Pa]
+};
+AcrossPlanes across_planes(const MaterialConfig& material);
+/// @throws InputError naming the key where no such rock can be
+void refuse_impossible_bedding(const MaterialConfig& material);
+
 /// Compliance of bedded rock, transversely isotropic with its axis in the plane: with E, nu in the
 /// planes, E', nu', G' across them (nu': strain along the planes over that across, pressed across)
 ///

@@ -12,7 +12,9 @@ namespace breccia::fdem3 {
 
 /// Internal force of the tetrahedron, plus its joints by face, plus its couples by the partners'
 /// global ids: no order of memory, threads or ranks changes a bit.
-struct ElementForces {
+/// @tparam bedded  whether some rock is stiffer in one direction than in others
+template <bool bedded>
+struct ElementForcesOf {
   static constexpr const char* name = "fdem3.elements";
   double span;  ///< time that the forces of this moment act  [s]
   View<const TetrahedronNodes> nodes;
@@ -105,16 +107,29 @@ struct ElementForces {
       const R spent = span * (eta * contract(rate, rate) * d.jacobian * volume);
       breccia::store(viscous_work, t, select(flows, before + spent, before));
     }
-    R law[8];
+    R law[bedded ? 16 : 8];
     gather_records(laws, loaded.material, law);
     const ElasticTetrahedronOf<R> elastic{
         law[0], law[1], {law[2], law[3], law[4], law[5], law[6], law[7]}};
-    corner_forces(g, volume, elastic.piola(d, eta, rate), sum);
+    Mat3Of<R> piola = elastic.piola(d, eta, rate);
+    if constexpr (bedded) add_planes(law, d.gradient, piola);
+    corner_forces(g, volume, piola, sum);
     for (int k = 0; k < 4; ++k) {
       force_on[3 * k] = sum[k].x;
       force_on[3 * k + 1] = sum[k].y;
       force_on[3 * k + 2] = sum[k].z;
     }
+  }
+  /// What the planes of a law add; nothing, to the bit, where it has none.
+  template <class R>
+  BR_HD static void add_planes(const R (&law)[16], const Mat3Of<R>& f, Mat3Of<R>& piola) {
+    const PlanesOf<R> planes{{law[8], law[9], law[10]}, law[11], law[12], law[13], {}, {}};
+    const auto any_here = dot(planes.across, planes.across) > 0.0;
+    if (!any(any_here)) return;
+    const Mat3Of<R> more = planes.piola(f);
+    piola.a = select(any_here, piola.a + more.a, piola.a);
+    piola.b = select(any_here, piola.b + more.b, piola.b);
+    piola.c = select(any_here, piola.c + more.c, piola.c);
   }
   /// Adds the forces of joints, by face, and of couples [from, to) of the list.
   BR_HD void add_pairs(const FaceJoints& own, Index from, Index to, Corners& sum) const {
@@ -142,6 +157,9 @@ struct ElementForces {
     }
   }
 };
+
+using ElementForces = ElementForcesOf<false>;
+using BeddedForces = ElementForcesOf<true>;
 
 using fdem_shared::Bundles;
 using BundleForces = fdem_shared::BundleForces<Corners>;

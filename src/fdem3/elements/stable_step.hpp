@@ -88,8 +88,8 @@ struct StableStep {
       if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 7)
         continue;  // goes where it is told, whatever its mass
       Parts p = at_corner[i];
-      fdem_shared::add_element<3>(p, form.slope, i, {1.0, volume}, law.lambda, law.shear,
-                                  viscosity[t]);
+      fdem_shared::add_element<3>(p, form.slope, i, {1.0, volume}, law.bound_lambda(),
+                                  law.bound_shear(), viscosity[t]);
       p.finish(mass[t]);
       if (p.step < largest.step) largest = p;
     }

@@ -22,6 +22,10 @@ constexpr Index width = width_of<WidestPack>;
   for (; begin + width <= end; begin += width) run_at<WidestPack>(kernel, begin);
   return begin;
 }
+[[gnu::flatten]] Index BR_PACKS::run(const BeddedForces& kernel, Index begin, Index end) {
+  for (; begin + width <= end; begin += width) run_at<WidestPack>(kernel, begin);
+  return begin;
+}
 [[gnu::flatten]] MovedTo BR_PACKS::run(const MoveTetrahedra& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
   for (; moved.end + width <= end; moved.end += width) {

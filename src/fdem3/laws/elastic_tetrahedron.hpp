@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fdem3/laws/bedded_rock.hpp"
 #include "math/elementary.hpp"
 #include "math/mat3.hpp"
 
@@ -106,49 +107,69 @@ struct ElasticTetrahedronOf {
     }
     return p;
   }
-  /// Cauchy stress, without viscosity.  [Pa]
-  BR_HD Sym3 stress(const Deformation& d) const {
-    const Mat3 p = piola(d, 0.0, {});
-    const Mat3& f = d.gradient;
-    const double over_j = 1.0 / d.jacobian;
-    const auto entry = [&](double pa, double pb, double pc, double fa, double fb, double fc) {
-      return over_j * (pa * fa + pb * fb + pc * fc);
-    };
-    return {entry(p.a.x, p.b.x, p.c.x, f.a.x, f.b.x, f.c.x),
-            entry(p.a.y, p.b.y, p.c.y, f.a.y, f.b.y, f.c.y),
-            entry(p.a.z, p.b.z, p.c.z, f.a.z, f.b.z, f.c.z),
-            entry(p.a.y, p.b.y, p.c.y, f.a.z, f.b.z, f.c.z),
-            entry(p.a.x, p.b.x, p.c.x, f.a.z, f.b.z, f.c.z),
-            entry(p.a.x, p.b.x, p.c.x, f.a.y, f.b.y, f.c.y)};
-  }
-  /// Energy per reference volume, with that at the start: S_0 : C^-1 S_0 / 2 by Hooke's law. No
+  /// Energy per reference volume, but for that at the start, S_0 : C^-1 S_0 / 2 by Hooke's law. No
   /// number where the tetrahedron is turned inside out. By the invariants of Green's strain E, of
   /// which J^2 - 1 = 2 I + 4 II + 8 III, so that terms of first order, which cancel, leave no
   /// rounding, whatever way it has turned: of a body at rest it is 1e-32 of the modulus.  [J/m3]
-  BR_HD double energy(const Deformation& d) const {
+  BR_HD double energy_since_start(const Deformation& d) const {
     if (!(d.jacobian > 0.0)) return NAN;
     const Mat3& f = d.gradient;
-    const Vec3 a = f.a - Vec3{1.0, 0.0, 0.0}, b = f.b - Vec3{0.0, 1.0, 0.0},
-               c = f.c - Vec3{0.0, 0.0, 1.0};
-    const Sym3 e{a.x + 0.5 * dot(a, a),         b.y + 0.5 * dot(b, b),
-                 c.z + 0.5 * dot(c, c),         0.5 * (b.z + c.y + dot(b, c)),
-                 0.5 * (a.z + c.x + dot(a, c)), 0.5 * (a.y + b.x + dot(a, b))};
+    const Sym3 e = green_strain(f);
     const double second =
         e.xx * e.yy - e.xy * e.xy + (e.xx * e.zz - e.xz * e.xz) + (e.yy * e.zz - e.yz * e.yz);
     const double third = e.xx * (e.yy * e.zz - e.yz * e.yz) - e.xy * (e.xy * e.zz - e.yz * e.xz) +
                          e.xz * (e.xy * e.yz - e.yy * e.xz);
     const double higher = 4.0 * second + 8.0 * third,
                  bent = log_less_linear(2.0 * trace(e) + higher);
-    return -(0.5 * shear * (higher + bent) + 0.25 * lambda * bent) + contract(preset, e) +
-           energy_at_start();
+    return -(0.5 * shear * (higher + bent) + 0.25 * lambda * bent) + contract(preset, e);
   }
+};
+
+/// Cauchy stress of a first Piola tensor.  [Pa]
+BR_HD inline Sym3 cauchy_stress(const Mat3& p, const Deformation& d) {
+  const Mat3& f = d.gradient;
+  const double over_j = 1.0 / d.jacobian;
+  const auto entry = [&](double pa, double pb, double pc, double fa, double fb, double fc) {
+    return over_j * (pa * fa + pb * fb + pc * fc);
+  };
+  return {entry(p.a.x, p.b.x, p.c.x, f.a.x, f.b.x, f.c.x),
+          entry(p.a.y, p.b.y, p.c.y, f.a.y, f.b.y, f.c.y),
+          entry(p.a.z, p.b.z, p.c.z, f.a.z, f.b.z, f.c.z),
+          entry(p.a.y, p.b.y, p.c.y, f.a.z, f.b.z, f.c.z),
+          entry(p.a.x, p.b.x, p.c.x, f.a.z, f.b.z, f.c.z),
+          entry(p.a.x, p.b.x, p.c.x, f.a.y, f.b.y, f.c.y)};
+}
+
+/// A material's law, with its bedding: sixteen numbers side by side, of which packs gather the
+/// first eight, or all.
+struct ElasticTetrahedron : ElasticTetrahedronOf<double> {
+  Planes planes{};
+
+  BR_HD bool is_bedded() const { return dot(planes.across, planes.across) > 0.0; }
+  BR_HD Mat3 piola(const Deformation& d, double eta, const Sym3& rate) const {
+    Mat3 p = ElasticTetrahedronOf::piola(d, eta, rate);
+    if (is_bedded()) add_to(p, planes.piola(d.gradient));
+    return p;
+  }
+  /// Cauchy stress, without viscosity.  [Pa]
+  BR_HD Sym3 stress(const Deformation& d) const { return cauchy_stress(piola(d, 0.0, {}), d); }
+  /// Energy per reference volume, with that at the start.  [J/m3]
+  BR_HD double energy(const Deformation& d) const {
+    double sum = energy_since_start(d);
+    if (is_bedded()) sum += planes.energy(green_strain(d.gradient));
+    return sum + energy_at_start();
+  }
+  /// S_0 : C^-1 S_0 / 2.  [J/m3]
   BR_HD double energy_at_start() const {
+    if (is_bedded()) return planes.energy_of(preset, lambda, shear);
     const double sum = trace(preset);
     return 0.25 / shear *
            (contract(preset, preset) - lambda / (3.0 * lambda + 2.0 * shear) * sum * sum);
   }
+  /// Lame's constants of an even rock that is nowhere softer.  [Pa]
+  BR_HD double bound_lambda() const { return lambda + planes.more_lambda; }
+  BR_HD double bound_shear() const { return shear + planes.more_shear; }
 };
-using ElasticTetrahedron = ElasticTetrahedronOf<double>;
 
 /// Forces that the stress puts on the corners, f_k = -V_0 P G_k; they sum to zero.  [N]
 template <class R>

@@ -9,12 +9,13 @@
 namespace breccia::fdem3 {
 namespace {
 
-double area_of(const Model& model, Index face) {
+/// Normal of a face, as long as its area.  [m2]
+Vec3 area_of(const Model& model, Index face) {
   const auto& corners = model.tetrahedron[at(face / 4)];
   const auto point = [&](int k) {
     return model.point[at(corners[at(corner_of_face(face % 4, k))])];
   };
-  return 0.5 * norm(cross(point(1) - point(0), point(2) - point(0)));
+  return 0.5 * cross(point(1) - point(0), point(2) - point(0));
 }
 
 }  // namespace
@@ -47,12 +48,15 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     for (const Index face : faces) {
       const auto t = at(face / 4);
       const auto material = static_cast<std::size_t>(model.material[t]);
-      const double density = config.materials[material].density;
-      const double own = area_of(model, face), impedance = density * w.given->rocks[material].fast;
+      const Vec3 normal = area_of(model, face);
+      const double own = norm(normal);
+      const EffectiveRock::Impedances met = w.given->rocks[material].on(normal);
       loaded.push_back({face / 4, static_cast<std::int16_t>(face % 4), static_cast<std::int16_t>(l),
-                        own, impedance, density * w.given->rocks[material].slow});
+                        own, met.pressing, met.shearing});
       area += own;
-      if (absorbs) dashpots[t].at[face % 4] += impedance * w.given->load_amplitudes[l].x.largest();
+      if (absorbs)
+        dashpots[t].at[face % 4] +=
+            std::max(met.pressing, met.shearing) * w.given->load_amplitudes[l].x.largest();
     }
     for (std::size_t i = first; i < loaded.size(); ++i)
       loaded[i].share = is_fluid ? 1.0 : loaded[i].share / area;

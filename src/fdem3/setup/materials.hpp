@@ -10,7 +10,13 @@ namespace breccia::fdem3 {
 /// joints and friction come from the same tables.
 fdem::Config shared_keys(const Config& config);
 
-/// @throws InputError for a Poisson's ratio of 0.5 or more
+/// Whether some material is stiffer in one direction than in others.
+bool has_bedded_rock(const Config& config);
+
+/// Stiffness of bedded rock. @throws InputError naming the key where no such rock can be
+SolidModuli moduli_of(const MaterialConfig& material);
+
+/// @throws InputError for a Poisson's ratio of 0.5 or more, or a bedding that no rock can have
 std::vector<ElasticTetrahedron> elastic_table(const Config& config);
 
 /// Laws of materials, or, where the stress in situ has a slope, of tetrahedra.

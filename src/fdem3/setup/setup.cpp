@@ -296,6 +296,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.materials = static_cast<Index>(config.materials.size());
   given.contact_lengths = contact_lengths(config, model);
   given.rocks = effective_rocks(config);
+  given.bedded = has_bedded_rock(config);
   set_up_middles(w, model);
   copy_to(given.laws, elastic_laws(config, given));
   copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));

@@ -45,7 +45,7 @@ struct Launches {
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
-    visit(emptying(w, element_kernel(w)));
+    with_element_kernel(w, [&](const auto& kernel) { visit(emptying(w, kernel)); });
   }
   static BundleForces bundles(World& w) { return bundle_kernel(w); }
 };

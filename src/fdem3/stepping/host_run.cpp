@@ -29,9 +29,10 @@ void HostRun::pair_forces(World& w) const {
 
 void HostRun::sum_forces(World& w) const {
   const StageTime timed(w.exec, "element_forces");
-  const ElementForces kernel = element_kernel(w);
-  fdem_shared::each_run(w, w.domain.runs,
-                        [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
+  with_element_kernel(w, [&w](const auto& kernel) {
+    fdem_shared::each_run(w, w.domain.runs,
+                          [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
+  });
 }
 
 }  // namespace breccia::fdem3

@@ -23,6 +23,9 @@ void run_packs([[maybe_unused]] Lanes lanes, const JointForces& kernel, Index be
 void run_packs(Lanes lanes, const ElementForces& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
+void run_packs(Lanes lanes, const BeddedForces& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
 bool run_packs(Lanes lanes, const MoveTetrahedra& kernel, Index begin, Index end) {
   bool beyond = false;
   run_whole_packs<fdem_shared::NotingPacks<PacksAvx512>, fdem_shared::NotingPacks<PacksAvx2>>(

@@ -10,6 +10,7 @@ namespace breccia::fdem3 {
 /// kernel for the items [begin, end), in packs of so many lanes, with the bits of one by one.
 void run_packs(Lanes lanes, const JointForces& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const ElementForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const BeddedForces& kernel, Index begin, Index end);
 /// @returns whether a tetrahedron has used its margin up
 bool run_packs(Lanes lanes, const MoveTetrahedra& kernel, Index begin, Index end);
 
@@ -30,11 +31,13 @@ struct LeftJoints {
 struct PacksAvx2 {
   static LeftJoints run(const JointForces& kernel, Index begin, Index end);
   static Index run(const ElementForces& kernel, Index begin, Index end);
+  static Index run(const BeddedForces& kernel, Index begin, Index end);
   static MovedTo run(const MoveTetrahedra& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
   static LeftJoints run(const JointForces& kernel, Index begin, Index end);
   static Index run(const ElementForces& kernel, Index begin, Index end);
+  static Index run(const BeddedForces& kernel, Index begin, Index end);
   static MovedTo run(const MoveTetrahedra& kernel, Index begin, Index end);
 };
 

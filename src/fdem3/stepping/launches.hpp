@@ -52,7 +52,8 @@ inline CoupleForces couple_kernel(World& w) {
           c.history.force.view()};
 }
 
-inline ElementForces element_kernel(World& w) {
+template <bool bedded>
+ElementForcesOf<bedded> element_kernel(World& w) {
   Tetrahedra& t = w.tetrahedra;
   return {w.last_dt,
           std::as_const(t.nodes).view(),
@@ -67,6 +68,15 @@ inline ElementForces element_kernel(World& w) {
           std::as_const(w.couples.history.force).view(),
           t.force.view(),
           t.viscous_work.view()};
+}
+
+/// Calls visit(kernel) with the kernel of the sums of forces.
+template <class Visit>
+void with_element_kernel(World& w, const Visit& visit) {
+  if (w.given->bedded)
+    visit(element_kernel<true>(w));
+  else
+    visit(element_kernel<false>(w));
 }
 
 inline LoadForces load_kernel(World& w) {

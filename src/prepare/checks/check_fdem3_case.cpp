@@ -4,6 +4,8 @@
 
 #include "core/named.hpp"
 #include "core/probe.hpp"
+#include "exec/error.hpp"
+#include "fdem/setup/bedding.hpp"
 #include "fdem/setup/case_rules.hpp"
 #include "fdem3/setup/materials.hpp"
 #include "fdem3/setup/stages.hpp"
@@ -19,12 +21,12 @@ class TetCaseChecks {
     for (const fdem3::MaterialConfig& m : config.materials) {
       if (m.poisson >= 0.5)
         add("material." + m.name + ".poisson: must be below 0.5 in three dimensions");
-      if (m.bedding.has_stiffness() || m.bedding.angle != 0.0)
-        add("material." + m.name +
-            ".bedding: in three dimensions it is strength and normal alone; leave angle, young, "
-            "poisson and shear out");
-      if (m.bedding.strength != 1.0 && !(norm(m.bedding.normal) > 0.0))
+      if (m.bedding.angle != 0.0)
+        add("material." + m.name + ".bedding.angle is of triangles; normal tells planes in space");
+      const bool has_planes = m.bedding.strength != 1.0 || m.bedding.has_stiffness();
+      if (has_planes && !(norm(m.bedding.normal) > 0.0))
         add("material." + m.name + ".bedding.normal: its planes need a direction across them");
+      if (m.bedding.has_stiffness()) check_stiffness(m);
     }
     for (const fdem3::SupportConfig& s : config.supports)
       check_region("support." + s.name, s.region);
@@ -42,6 +44,19 @@ class TetCaseChecks {
 
  private:
   void add(const std::string& text) { problems_.push_back(text); }
+
+  void check_stiffness(const fdem3::MaterialConfig& m) {
+    try {
+      fdem::refuse_impossible_bedding(m);
+    } catch (const InputError& error) {
+      add(error.what());
+    }
+    if (m.joints != "none" && config_.joints.criterion == "rock")
+      add("material." + m.name +
+          ".bedding: where rock is stiffer in one direction than in others, joints in space fail "
+          "by "
+          "their own tractions: joints.criterion = \"edge\", or joints = \"none\"");
+  }
 
   void check_region(const std::string& where, const fdem3::RegionConfig& r) {
     if (!r.around.empty() && !(r.radius > 0.0) && r.polygon.empty())

@@ -13,7 +13,7 @@ namespace elastic_tetrahedron_test {
 constexpr double young = 60e9, poisson = 0.25;
 
 ElasticTetrahedron law_of(const Sym3& preset = {}) {
-  return {lame_lambda(young, poisson), fdem::shear_modulus(young, poisson), preset};
+  return {{lame_lambda(young, poisson), fdem::shear_modulus(young, poisson), preset}, {}};
 }
 
 /// Turned by 30 degrees about (1, 2, 3).
@@ -134,6 +134,62 @@ TEST(ElasticTetrahedron, puts_forces_that_are_the_slope_of_its_energy) {
       const double force = axis == 0 ? f[k].x : axis == 1 ? f[k].y : f[k].z;
       EXPECT_NEAR(-slope, force, 1e-6 * largest) << k << ' ' << axis;
     }
+}
+
+/// Transversely isotropic, with planes aslant.
+ElasticTetrahedron bedded_law(const Sym3& preset = {}) {
+  ElasticTetrahedron law = law_of(preset);
+  law.planes.across = (1.0 / std::sqrt(14.0)) * Vec3{1.0, -2.0, 3.0};
+  law.planes.pressed = -0.3 * law.lambda;
+  law.planes.slid = -0.4 * law.shear;
+  law.planes.bent = 0.5 * law.shear;
+  return law;
+}
+
+/// Forces are the slope of the energy, with neither sum nor moment, and turn with the body.
+TEST(ElasticTetrahedron, of_bedded_rock_puts_forces_that_are_the_slope_of_its_energy) {
+  const ElasticTetrahedron law = bedded_law({-10e6, -20e6, -30e6, 3e6, -2e6, 4e6});
+  const Example e({1.05, 0.93, 1.08, 0.04, -0.03, 0.06});
+  Vec3 f[4], sum{}, moment{};
+  e.forces(law, 0.0, f);
+  double largest = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    sum += f[k];
+    moment += cross(e.x[k], f[k]);
+    largest = std::max(largest, norm(f[k]));
+  }
+  EXPECT_LT(norm(sum), 1e-14 * largest);
+  EXPECT_LT(norm(moment), 1e-13 * largest * 3e-3);
+  const double h = 1e-8;
+  for (int k = 0; k < 4; ++k)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto energy_at = [&](double by) {
+        Example moved = e;
+        Vec3& x = moved.x[k];
+        (axis == 0 ? x.x : axis == 1 ? x.y : x.z) += by;
+        return moved.energy(law);
+      };
+      const double slope =
+          (8.0 * (energy_at(h) - energy_at(-h)) - (energy_at(2.0 * h) - energy_at(-2.0 * h))) /
+          (12.0 * h);
+      const double force = axis == 0 ? f[k].x : axis == 1 ? f[k].y : f[k].z;
+      EXPECT_NEAR(-slope, force, 1e-6 * largest) << k << ' ' << axis;
+    }
+}
+
+/// S : C^-1 S / 2 is what a strain stores that brings a rock to that stress.
+TEST(ElasticTetrahedron, of_bedded_rock_holds_the_energy_of_its_stress) {
+  const ElasticTetrahedron law = bedded_law();
+  const double s = 1e-7;
+  const Sym3 e{3.0 * s, -1.0 * s, 0.5 * s, 2.0 * s, -0.7 * s, 1.2 * s};
+  Deformation d;
+  d.gradient = {{1.0 + e.xx, e.xy, e.xz}, {e.xy, 1.0 + e.yy, e.yz}, {e.xz, e.yz, 1.0 + e.zz}};
+  d.cofactor = cofactors(d.gradient);
+  d.jacobian = dot(d.gradient.a, d.cofactor.a);
+  const Sym3 stress = law.stress(d);
+  const double stored = 0.5 * contract(stress, e);
+  EXPECT_NEAR(law.energy(d), stored, 1e-5 * stored);
+  EXPECT_NEAR(law.planes.energy_of(stress, law.lambda, law.shear), stored, 1e-5 * stored);
 }
 
 TEST(ElasticTetrahedron, holds_next_to_nothing_where_rounding_alone_deforms_it) {

@@ -94,7 +94,7 @@ TEST(Fdem3Emission, of_a_sheared_plane_has_the_moment_of_its_slip) {
 
 /// A tensor turns with what it tells of: any normal and direction, opened and slid at once.
 TEST(Fdem3Emission, has_the_invariants_of_its_moment_in_every_direction) {
-  const ElasticTetrahedron law{lambda, mu};
+  const ElasticTetrahedron law{{lambda, mu}, {}};
   for (const Vec3& n : {Vec3{0.0, 0.0, 1.0}, Vec3{0.48, 0.6, 0.64}}) {
     const Vec3 across = std::abs(n.x) > 0.0 ? Vec3{0.8, 0.0, -0.6} : Vec3{1.0, 0.0, 0.0};
     const Sym3 m = fdem_shared::moment_of(law, n, across, 2.0, 1e-6, 3e-6);
