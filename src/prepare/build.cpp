@@ -8,6 +8,7 @@
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/body.hpp"
+#include "prepare/meshing/heterogeneity.hpp"
 #include "prepare/packing/body_packing.hpp"
 #include "prepare/packing/linking.hpp"
 #include "prepare/packing/ordering.hpp"
@@ -196,6 +197,27 @@ double mean_radius(const Model& model) {
   return sum / static_cast<double>(model.radius.size());
 }
 
+constexpr std::uint32_t grain_stream = 0x40000;  ///< of random numbers: packings use those below
+
+/// Links between two grains of a body get the material of its grains' boundaries.
+void give_boundaries(Model& model, const Config& config) {
+  for (std::size_t b = 0; b < config.bodies.size(); ++b) {
+    const dem::GrainsConfig& grains = config.bodies[b].grains;
+    if (grains.boundary.empty()) continue;
+    const std::vector<std::uint64_t> grain = prepare::voronoi_grains(
+        model.position, grains.size,
+        {static_cast<std::uint64_t>(config.seed), grain_stream + static_cast<std::uint32_t>(b)});
+    const auto of_body = [&](Index e) {
+      return static_cast<std::size_t>(model.group[static_cast<std::size_t>(e)]) == b;
+    };
+    const auto material = static_cast<std::int16_t>(find_named(config.materials, grains.boundary));
+    for (Model::Link& link : model.links)
+      if (of_body(link.a) && of_body(link.b) &&
+          grain[static_cast<std::size_t>(link.a)] != grain[static_cast<std::size_t>(link.b)])
+        link.material = material;
+  }
+}
+
 }  // namespace
 
 dem::Model build_model(const dem::Config& config, const std::string& case_folder) {
@@ -210,6 +232,7 @@ dem::Model build_model(const dem::Config& config, const std::string& case_folder
   prepare::link_facets(model);
   for (MaterialConfig& material : whole.materials) material.bedding = {};  // E is that without
   prepare::set_stiffness(model, whole);
+  give_boundaries(model, config);
   prepare::carve(model, config, case_folder);
   prepare::add_wall_meshes(model, config, case_folder);
 

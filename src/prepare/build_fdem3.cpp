@@ -162,13 +162,18 @@ class TetBodyInModel {
     }
   }
 
-  void give_minerals() {
+  /// @param grain  gets the grain of each tetrahedron, where faces between grains have a law
+  void give_minerals(std::vector<std::uint64_t>& grain) {
     const fdem::GrainsConfig& grains = body_.grains;
     if (grains.kind.empty()) return;
     const Random random = random_of(tet_grain_stream);
     std::vector<std::uint64_t> keys(tetrahedra_.size());
     for (std::size_t k = 0; k < keys.size(); ++k) keys[k] = k;
     if (grains.kind == "voronoi") keys = prepare::voronoi_grains(places_, grains.size, random);
+    if (!grains.boundary.empty()) {
+      grain.resize(model_.tetrahedron.size());
+      for (std::size_t k = 0; k < keys.size(); ++k) grain[tetrahedra_[k]] = keys[k];
+    }
     const std::vector<int> minerals = by_share(keys, random);
     for (std::size_t k = 0; k < tetrahedra_.size(); ++k)
       model_.material[tetrahedra_[k]] = index_in(
@@ -219,11 +224,31 @@ class TetBodyInModel {
   std::vector<Vec3> places_;  ///< of the tetrahedra's centroids  [m]
 };
 
+/// Laws of faces between two grains of one body, where the body gives one.
+/// @param grain  of each tetrahedron; empty: no body does
+std::map<prepare::Face, std::int16_t> grain_boundaries(const Model& model, const Config& config,
+                                                       const std::vector<prepare::MeshFace>& faces,
+                                                       const std::vector<std::uint64_t>& grain) {
+  std::map<prepare::Face, std::int16_t> law;
+  if (grain.empty()) return law;
+  for (const prepare::MeshFace& face : faces) {
+    if (face.tetrahedra[1] < 0) continue;
+    const auto a = static_cast<std::size_t>(face.tetrahedra[0]),
+               b = static_cast<std::size_t>(face.tetrahedra[1]);
+    if (model.group[a] != model.group[b] || grain[a] == grain[b]) continue;
+    const std::string& name =
+        config.bodies[static_cast<std::size_t>(model.group[a])].grains.boundary;
+    if (!name.empty()) law[face.corners] = index_in(config.joint_laws, name);
+  }
+  return law;
+}
+
 /// Cracks at the start; on a face of several, the last counts.
+/// @param material  laws of faces between grains
 /// @param single  how many of them are no parts of sets; each must meet a face, and of a set one
 void crack(Model& model, const Config& config, std::size_t single,
-           const std::vector<prepare::MeshFace>& faces, std::vector<std::string>& problems) {
-  std::map<prepare::Face, std::int16_t> material;
+           const std::vector<prepare::MeshFace>& faces,
+           std::map<prepare::Face, std::int16_t> material, std::vector<std::string>& problems) {
   std::map<std::string, bool> sets;  // whether one of theirs met a face
   for (std::size_t k = 0; k < config.discontinuities.size(); ++k) {
     const DiscontinuityConfig& d = config.discontinuities[k];
@@ -304,14 +329,16 @@ fdem3::Model build_model(const fdem3::Config& given, const std::string& case_fol
   fdem3::TetAssembly assembly(config, case_folder);
   fdem3::Model& model = assembly.model();
   prepare::order_along_curve(model);
+  std::vector<std::uint64_t> grain;
   for (std::size_t b = 0; b < config.bodies.size(); ++b) {
     fdem3::TetBodyInModel body(model, config, b);
-    body.give_minerals();
+    body.give_minerals(grain);
     body.give_strength();
   }
   std::vector<std::string> problems;
   const std::vector<prepare::MeshFace> faces = prepare::faces_of(model.tetrahedron);
-  fdem3::crack(model, config, given.discontinuities.size(), faces, problems);
+  fdem3::crack(model, config, given.discontinuities.size(), faces,
+               fdem3::grain_boundaries(model, config, faces, grain), problems);
   fdem3::look_for_overlaps(model, faces, problems);
   fdem3::look_for_seams(model, problems);
   prepare::refuse(problems, "with the model");

@@ -136,6 +136,25 @@ struct CutConfig {
   }
 };
 
+/// [body.grains]: grains of spheres whose boundaries are of another material
+struct GrainsConfig {
+  std::string kind;
+  double size = 0.0;  ///< of a grain  [m]
+  std::string boundary;
+
+  bool any() const { return !kind.empty() || size > 0.0 || !boundary.empty(); }
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("kind", kind, OneOf{"voronoi"}, "voronoi: grains of the given size");
+    key.required("kind");
+    key("size", size, "m", not_negative, "size of a Voronoi grain: root of its mean volume");
+    key("boundary", boundary,
+        "material, of the body's law (concrete or parallel), whose strengths and moduli all links "
+        "between two grains have; how far these open before they part stays the body's where that "
+        "has a fracture_energy");
+  }
+};
+
 /// [[body]]
 struct BodyConfig {
   std::string name;
@@ -156,6 +175,7 @@ struct BodyConfig {
   std::string file;              ///< CSV of x, y, z, radius in metres; of LDPM its tetrahedra; STL
   double file_unit = 1.0;        ///< of an STL file  [m]
   double volume = 0.0;  ///< of the bulk that a file's spheres stand for; 0: of the box `size`  [m3]
+  GrainsConfig grains{};
 
   /// Of what a file's spheres stand for; 0: of nothing but themselves.  [m3]
   double bulk_volume() const { return volume > 0.0 ? volume : size.x * size.y * size.z; }
@@ -188,6 +208,7 @@ struct BodyConfig {
     key.list("cut", cuts, "notches, holes and slots, sawn out of a packed body");
     key.table("pack", pack, "the packing of a box, sphere, cylinder or STL file");
     key.table("rebar", rebar, "the bars of a rebar body");
+    key.table("grains", grains, "grains, with links of another material between them");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity at the start");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "angular velocity of the body about its centre at the start");

@@ -73,8 +73,9 @@ struct GrainsConfig {
     key.list("mineral", minerals, "the minerals of the body");
     key("file", file, "PNG file beside the case file, stretched over the body's bounding box");
     key("boundary", boundary,
-        "[joint.<name>] of all edges between two Voronoi grains, of one mineral or of two; empty: "
-        "edges within a mineral and between minerals have the joints of these (plane cases)");
+        "[joint.<name>] of all edges (tetrahedra: faces) between two Voronoi grains, of one "
+        "mineral or of two; empty: those within a mineral and between minerals have the joints of "
+        "these");
   }
 };
 

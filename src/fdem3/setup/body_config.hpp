@@ -30,7 +30,9 @@ struct BodyConfig {
   std::vector<std::string> parts;  ///< physical groups of the file
   fdem::GrainsConfig grains;
   fdem::WeibullConfig weibull;
+  Vec3 direction{}, across{};  ///< of its own z, and about its own x; 0: as in the case  [-]
 
+  bool is_turned() const { return norm(direction) + norm(across) > 0.0; }
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the body: its tetrahedra form a group of this name");
@@ -47,6 +49,11 @@ struct BodyConfig {
     key("radius", radius, "m", not_negative, "radius of a cylinder or sphere");
     key("height", height, "m", not_negative, "length of a cylinder along its axis");
     key("axis", axis, OneOf{"x", "y", "z"}, "direction of a cylinder's axis");
+    key("direction", direction, "-", any_number,
+        "box, cylinder, stl: any direction for its own z, along a cylinder: it is turned about its "
+        "centre, of a file about the origin; left out: not turned");
+    key("across", across, "-", any_number,
+        "about the direction of its own x; left out: turned the shortest way");
     key("mesh_size", mesh_size, "m", not_negative, "edge length of the tetrahedra");
     key("jitter", jitter, "-", Range{0.0, 0.3},
         "inner vertices are moved by up to this share of an edge");

@@ -88,6 +88,7 @@ class DemBodyChecks {
   }
   void check(const BodyConfig& b) {
     check_material(b);
+    if (b.grains.any()) check_grains(b);
     if (b.shape == "rebar") return check_rebar(b);
     const MaterialConfig* of = prepare::item_named(config_.materials, b.material);
     if (of != nullptr && of->law == "ldpm") check_ldpm(b, *of);
@@ -112,6 +113,23 @@ class DemBodyChecks {
     require(b.shape != "file" || !even || b.size.x * b.size.y * b.size.z > 0.0,
             ".size is missing: fabric = \"{}\" of {} asks how deep elements lie in their box",
             material == nullptr ? "" : material->fabric, b.material);
+  }
+
+  void check_grains(const BodyConfig& b) {
+    const dem::GrainsConfig& g = b.grains;
+    const MaterialConfig* const of = prepare::item_named(config_.materials, b.material);
+    const MaterialConfig* const between = prepare::item_named(config_.materials, g.boundary);
+    require(g.size > 0.0, ".grains.size must be above 0 for Voronoi grains");
+    require(is_packed(b) || b.shape == "file",
+            ".grains: packings and spheres of a file have grains, not shape {}", b.shape);
+    require(between != nullptr, ".grains.boundary = \"{}\" is no material; there are: {}",
+            g.boundary, prepare::all_names(config_.materials));
+    if (of == nullptr || between == nullptr) return;
+    require(of->law == "concrete" || of->law == "parallel",
+            ".grains: links of law concrete and parallel have boundaries, not law {}", of->law);
+    require(of->law == between->law,
+            ".grains.boundary = \"{}\" is of law {}, and links of {} are of law {}", g.boundary,
+            between->law, b.name, of->law);
   }
 
   static bool is_packed(const BodyConfig& b) {

@@ -8,6 +8,7 @@
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/tetrahedra/joint_discs.hpp"
+#include "prepare/tetrahedra/tet_body.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -21,11 +22,11 @@ constexpr double least_tet_width = 1e-4;  ///< of a body, over mesh_size  [-]
 
 /// Half of the edges of the box around a body whose shape its keys tell.  [m]
 Vec3 half_of(const TetBodyConfig& b) {
-  if (b.shape == "box") return 0.5 * b.size;
   Vec3 half{b.radius, b.radius, b.radius};
+  if (b.shape == "box") half = 0.5 * b.size;
   if (b.shape == "cylinder")
     (b.axis == "x" ? half.x : b.axis == "y" ? half.y : half.z) = 0.5 * b.height;
-  return half;
+  return b.is_turned() ? half_around(frame_of(b), half) : half;
 }
 bool has_bounds(const TetBodyConfig& b) {
   return b.shape != "mesh" && b.shape != "stl" && b.shape != "part";
@@ -46,6 +47,7 @@ double space_between(const TetBodyConfig& a, const TetBodyConfig& b) {
   const Vec3 apart = b.center - a.center, half = half_of(a) + half_of(b);
   const double boxes = std::max(
       {std::abs(apart.x) - half.x, std::abs(apart.y) - half.y, std::abs(apart.z) - half.z});
+  if (a.is_turned() || b.is_turned()) return std::max(boxes, 0.0);  // the mesh tells the rest
   const auto is = [&](const char* one, const char* other) {
     return a.shape == one && b.shape == other;
   };
@@ -116,6 +118,7 @@ class TetBodyChecks {
     const bool box = b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0;
     require(box != (b.radius > 0.0),
             "a part needs size, or a radius (with a height it is a cylinder), one of them");
+    require(!b.is_turned(), "a part is not turned; leave direction and across out");
     require(norm(b.velocity) == 0.0, "a part moves as the body that it is of");
     require(b.mesh_size == 0.0 && b.file.empty() && b.parts.empty() && !b.structured,
             "a part has the mesh of the body that it is of");
@@ -140,6 +143,14 @@ class TetBodyChecks {
     require(cylinder || sphere || b.radius == 0.0,
             "radius is of cylinders and spheres; shape is {}", b.shape);
     require(cylinder || b.height == 0.0, "height is of cylinders; shape is {}", b.shape);
+    require(!b.is_turned() || box || cylinder || b.shape == "stl",
+            "direction and across turn boxes, cylinders and STL surfaces; shape is {}", b.shape);
+    require(!b.is_turned() || b.axis == "z",
+            "axis = \"{}\" and direction both say where its axis points; give direction alone",
+            b.axis);
+    const Vec3 z = norm(b.direction) > 0.0 ? b.direction : Vec3{0.0, 0.0, 1.0};
+    require(norm(b.across) == 0.0 || norm(cross(z, b.across)) > 1e-6 * norm(z) * norm(b.across),
+            "across lies along its own z: it says nothing of how the body is turned");
     require(!b.structured || box, "structured = true is for boxes, not for {}", b.shape);
     if (b.shape == "mesh")
       require(b.mesh_size == 0.0, "mesh_size has no use: the file is the mesh");
@@ -173,7 +184,11 @@ class TetBodyChecks {
     const fdem::GrainsConfig& g = b.grains;
     require(g.kind != "picture",
             "grains.kind = \"picture\" is for plane cases; allowed are voronoi and random");
-    require(g.boundary.empty(), "grains.boundary is for plane cases");
+    require(g.boundary.empty() || g.kind == "voronoi",
+            "grains.boundary is between Voronoi grains; kind is {}", g.kind);
+    require(g.boundary.empty() || item_named(config_.joint_laws, g.boundary) != nullptr,
+            "grains.boundary = \"{}\" is not a joint law; there are: {}", g.boundary,
+            all_names(config_.joint_laws));
     require(!g.minerals.empty(), "grains need at least one [[body.grains.mineral]]");
     require(g.kind != "voronoi" || g.size > 0.0, "grains.size must be above 0 for Voronoi grains");
     double sum = 0.0;
@@ -237,8 +252,8 @@ std::string missing_part(const fdem3::BodyConfig& part, const fdem3::BodyConfig&
   TetBodyConfig taken = part;
   taken.shape = !(part.radius > 0.0) ? "box" : part.height > 0.0 ? "cylinder" : "sphere";
   const double space = space_between(taken, body);
-  const bool crossed =
-      taken.shape == "cylinder" && body.shape == "cylinder" && taken.axis != body.axis;
+  const bool crossed = body.is_turned() || (taken.shape == "cylinder" && body.shape == "cylinder" &&
+                                            taken.axis != body.axis);
   const double tolerance = crossed ? 0.0 : 1e-9 * (norm(half) + norm(body.center));
   if (space < -tolerance || (crossed && space == 0.0)) return "";
   return fmt::format(

@@ -107,8 +107,13 @@ Outline outline_of(const fdem3::BodyConfig& b, const std::string* folder) {
               const std::string path = in_folder(*folder, b.file);
               if (b.shape == "stl") {
                 const Surface surface = read_surface(path, 1.0);
-                add_to(all, moved(surface.low(), b.center));
-                add_to(all, moved(surface.high(), b.center));
+                const Vec3 low = surface.low(), high = surface.high();
+                const Frame3 frame = frame_of(b);
+                for (int k = 0; k < 8; ++k) {
+                  const Vec3 corner{(k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y,
+                                    (k & 4) != 0 ? high.z : low.z};
+                  add_to(all, moved(frame.out(corner), b.center));
+                }
                 return;
               }
               const TetMesh mesh = read_tet_mesh(path);
@@ -120,6 +125,10 @@ Outline outline_of(const fdem3::BodyConfig& b, const std::string* folder) {
   std::array<double, 3> half{b.radius, b.radius, b.radius};
   if (b.shape == "box") half = {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z};
   if (b.shape == "cylinder") half[b.axis == "x" ? 0U : b.axis == "y" ? 1U : 2U] = 0.5 * b.height;
+  if (b.is_turned()) {
+    const Vec3 around_it = half_around(frame_of(b), {half[0], half[1], half[2]});
+    half = {around_it.x, around_it.y, around_it.z};
+  }
   return {b.name, around({b.center.x, b.center.y, b.center.z}, half)};
 }
 

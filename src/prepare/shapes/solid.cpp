@@ -70,14 +70,17 @@ Solid solid_of(const dem::CutConfig& config) {
           frame_of(config.axis, config.across)};
 }
 
-Vec3 Solid::half() const {
-  const Vec3 own = container.half();
+Vec3 half_around(const Frame3& frame, const Vec3& half) {
   const auto along = [&](double x, double y, double z) {
-    return std::abs(x) * own.x + std::abs(y) * own.y + std::abs(z) * own.z;
+    return std::abs(x) * half.x + std::abs(y) * half.y + std::abs(z) * half.z;
   };
-  if (container.shape == Container::Shape::sphere) return own;
   return {along(frame.x.x, frame.y.x, frame.z.x), along(frame.x.y, frame.y.y, frame.z.y),
           along(frame.x.z, frame.y.z, frame.z.z)};
+}
+
+Vec3 Solid::half() const {
+  const Vec3 own = container.half();
+  return container.shape == Container::Shape::sphere ? own : half_around(frame, own);
 }
 
 Solid::Span Solid::span(const Vec3& a, const Vec3& b) const {

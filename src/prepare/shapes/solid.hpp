@@ -20,6 +20,10 @@ struct Frame3 {
 /// `across` is zero, the frame of the case turned the shortest way.
 Frame3 frame_of(const Vec3& axis, const Vec3& across);
 
+/// Half the edges of the box along the axes of the case around one of such half edges in a frame.
+/// [m]
+Vec3 half_around(const Frame3& frame, const Vec3& half);
+
 /// A box, sphere or cylinder; all are convex.
 struct Solid {
   Container container;

@@ -28,7 +28,27 @@ bool follows_cracks(const fdem3::BodyConfig& body) {
   return needs_gmsh(body) && body.shape != "stl";
 }
 
+Frame3 frame_of(const fdem3::BodyConfig& body) {
+  const bool given = norm(body.direction) > 0.0;
+  return frame_of(given ? body.direction : Vec3{0.0, 0.0, 1.0}, body.across);
+}
+
 TetMesh mesh_of(const fdem3::BodyConfig& body, const TetContext& context) {
+  if (body.is_turned()) {  // meshed upright, with the cracks as they lie to it
+    const Frame3 frame = frame_of(body);
+    fdem3::BodyConfig upright = body;
+    upright.direction = upright.across = {};
+    TetContext own = context;
+    const auto in = [&](const Vec3& p) { return body.center + frame.in(p - body.center); };
+    for (fdem3::DiscontinuityConfig& crack : own.cracks) {
+      for (Vec3& p : crack.points) p = in(p);
+      crack.center = in(crack.center);
+      crack.normal = frame.in(crack.normal);
+    }
+    TetMesh mesh = mesh_of(upright, own);
+    for (Vec3& p : mesh.point) p = body.center + frame.out(p - body.center);
+    return mesh;
+  }
   const std::string path = (std::filesystem::path(context.folder) / body.file).string();
   const auto moved = [&](TetMesh mesh) {
     for (Vec3& p : mesh.point) p += body.center;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fdem3/setup/body_config.hpp"
+#include "prepare/shapes/solid.hpp"
 #include "prepare/tetrahedra/tet_gmsh.hpp"
 #include "prepare/tetrahedra/tet_mesh.hpp"
 
@@ -19,7 +20,10 @@ struct TetContext {
   FlatCracks cracks;         ///< that meshes made by gmsh follow
 };
 
-/// Meshes, moves to its centre and jitters a body.
+/// The directions of a body's own axes: turned about its centre.
+Frame3 frame_of(const fdem3::BodyConfig& body);
+
+/// Meshes, turns, moves to its centre and jitters a body.
 /// @throws InputError that does not name the body
 TetMesh mesh_of(const fdem3::BodyConfig& body, const TetContext& context);
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "exec/error.hpp"
 #include "math/constants.hpp"
@@ -42,6 +43,64 @@ std::string refusal(const Config& config) {
 
 bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+/// Without the links between them grains hang together by themselves, and nothing else does.
+TEST(Build, BoundariesOfGrainsPartAllOfThem) {
+  Config config = case_with_materials();
+  MaterialConfig seam = config.materials[0];
+  seam.name = "seam";
+  config.materials.push_back(seam);
+  BodyConfig box = box_body("rock", {0.1, 0.1, 0.1}, 4000, 0.6);
+  box.grains = {"voronoi", 0.05, "seam"};
+  config.bodies = {box};
+  const Model m = build_model(config, ".");
+  std::vector<std::size_t> root(m.position.size());
+  for (std::size_t e = 0; e < root.size(); ++e) root[e] = e;
+  const auto find = [&](Index element) {
+    auto e = static_cast<std::size_t>(element);
+    while (root[e] != e) e = root[e] = root[root[e]];
+    return e;
+  };
+  std::size_t between = 0;
+  for (const Model::Link& link : m.links)
+    if (link.material == 4)
+      ++between;
+    else
+      root[find(link.a)] = find(link.b);
+  EXPECT_GT(between, m.links.size() / 20);
+  EXPECT_LT(between, m.links.size() / 2);
+  std::map<std::size_t, int> elements;
+  for (Index e = 0; e < m.size(); ++e) ++elements[find(e)];
+  // 8 cubes of edge `size` in the box, and grains whose seeds lie beside it.
+  EXPECT_GE(elements.size(), 8U);
+  EXPECT_LT(elements.size(), 64U);
+  for (const auto& [grain, count] : elements) EXPECT_LT(count, 4000 / 2);
+  int within = 0;
+  for (const Model::Link& link : m.links)
+    within += link.material == 4 && find(link.a) == find(link.b) ? 1 : 0;
+  EXPECT_EQ(within, 0);
+  config.bodies[0].grains.boundary = {};
+  config.bodies[0].grains.kind = {};
+  config.bodies[0].grains.size = 0.0;
+  const Model even = build_model(config, ".");
+  ASSERT_EQ(even.links.size(), m.links.size());
+  for (const Model::Link& link : even.links) EXPECT_EQ(link.material, 0);
+}
+
+TEST(Build, BoundariesOfGrainsNeedAMaterialOfTheBodysLaw) {
+  Config config = case_with_materials();
+  BodyConfig box = box_body("rock", {0.1, 0.1, 0.1}, 400, 0.6);
+  box.grains = {"voronoi", 0.0, "seam"};
+  config.bodies = {box};
+  EXPECT_TRUE(mentions(refusal(config), "grains.size must be above 0 for Voronoi grains"));
+  EXPECT_TRUE(mentions(refusal(config),
+                       "grains.boundary = \"seam\" is no material; there are: "
+                       "c30, b500, bond, gravel"));
+  config.bodies[0].grains = {"voronoi", 0.05, "b500"};
+  EXPECT_TRUE(mentions(refusal(config),
+                       "grains.boundary = \"b500\" is of law steel, and links of "
+                       "rock are of law concrete"));
 }
 
 void expect_counts_of_the_paper(const Model& m) {

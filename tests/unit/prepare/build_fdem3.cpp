@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "fdem3/setup/regions.hpp"
@@ -180,6 +181,90 @@ TEST(BuildFdem3, MineralsHaveTheirSharesOfTheVolume) {
     else
       EXPECT_GT(share, 0.75);
   }
+}
+
+TEST(BuildFdem3, BodiesAreTurnedAboutTheirCentre) {
+  BodyConfig box = regular_box({0.4, 0.2, 0.1}, 0.05);
+  box.center = {1.0, 2.0, 3.0};
+  const Model upright = built({box});
+  box.direction = {1.0, 1.0, 0.0};
+  box.across = {0.0, 0.0, -2.0};
+  const Model turned = built({box});
+  ASSERT_EQ(turned.size(), upright.size());
+  EXPECT_TRUE(is_sound(turned));
+  EXPECT_NEAR(volume_of(turned), volume_of(upright), 1e-15);
+  const double root = std::sqrt(0.5);
+  Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  for (const Vec3& p : turned.point) {
+    const Vec3 from = p - box.center;
+    // Its own x points down, its z to (1, 1, 0), its y to (1, -1, 0) or against that.
+    const Vec3 own{-from.z, root * (from.x - from.y), root * (from.x + from.y)};
+    low = {std::min(low.x, own.x), std::min(low.y, own.y), std::min(low.z, own.z)};
+    high = {std::max(high.x, own.x), std::max(high.y, own.y), std::max(high.z, own.z)};
+  }
+  EXPECT_LT(norm(high - Vec3{0.2, 0.1, 0.05}), 1e-12);
+  EXPECT_LT(norm(low + Vec3{0.2, 0.1, 0.05}), 1e-12);
+  box.structured = false;
+  box.shape = "sphere";
+  box.size = {};
+  box.radius = 0.1;
+  EXPECT_TRUE(mentions(refusal(case_of({box})),
+                       "direction and across turn boxes, cylinders and STL surfaces"));
+}
+
+/// Rock of one mineral: what holds together without the boundaries are the grains.
+TEST(BuildFdem3, BoundariesOfGrainsPartAllOfThem) {
+  BodyConfig rock = regular_box({0.02, 0.02, 0.02}, 0.001);
+  rock.grains.kind = "voronoi";
+  rock.grains.size = 0.005;
+  rock.grains.minerals = {{.material = "quartz", .fraction = 1.0, .color = ""}};
+  EXPECT_TRUE(built({rock}).discontinuities.empty());
+  rock.grains.boundary = "vein";
+  const Model m = built({rock});
+  std::set<std::array<Index, 3>> given;
+  for (const auto& d : m.discontinuities) {
+    EXPECT_EQ(d.material, 0);
+    given.insert(d.face);
+  }
+  std::vector<std::size_t> root(m.tetrahedron.size());
+  for (std::size_t t = 0; t < root.size(); ++t) root[t] = t;
+  const auto find = [&](std::size_t t) {
+    while (root[t] != t) t = root[t] = root[root[t]];
+    return t;
+  };
+  const auto faces = prepare::faces_of(m.tetrahedron);
+  for (const prepare::MeshFace& face : faces)
+    if (face.tetrahedra[1] >= 0 && !given.contains(face.corners))
+      root[find(static_cast<std::size_t>(face.tetrahedra[0]))] =
+          find(static_cast<std::size_t>(face.tetrahedra[1]));
+  std::map<std::size_t, double> volume;
+  for (std::size_t t = 0; t < m.tetrahedron.size(); ++t)
+    volume[find(t)] += prepare::signed_volume(m.point, m.tetrahedron[t]);
+  // 64 cubes of edge `size` in the box, and grains whose seeds lie in those around it.
+  EXPECT_GT(volume.size(), 64U);
+  EXPECT_LE(volume.size(), 216U);
+  double largest = 0.0;
+  for (const auto& [grain, own] : volume) largest = std::max(largest, own);
+  EXPECT_LT(largest, 4.0 * 0.005 * 0.005 * 0.005);
+  for (const prepare::MeshFace& face : faces)  // no boundary lies within a grain
+    if (face.tetrahedra[1] >= 0 && given.contains(face.corners)) {
+      EXPECT_NE(find(static_cast<std::size_t>(face.tetrahedra[0])),
+                find(static_cast<std::size_t>(face.tetrahedra[1])));
+    }
+}
+
+TEST(BuildFdem3, BoundariesOfGrainsNeedGrainsAndAJointLaw) {
+  BodyConfig rock = regular_box({0.02, 0.02, 0.02}, 0.01);
+  rock.grains.kind = "random";
+  rock.grains.minerals = {{.material = "quartz", .fraction = 1.0, .color = ""}};
+  rock.grains.boundary = "vein";
+  EXPECT_TRUE(mentions(refusal(case_of({rock})),
+                       "grains.boundary is between Voronoi grains; kind is random"));
+  rock.grains.kind = "voronoi";
+  rock.grains.size = 0.005;
+  rock.grains.boundary = "seam";
+  EXPECT_TRUE(mentions(refusal(case_of({rock})),
+                       "grains.boundary = \"seam\" is not a joint law; there are: vein"));
 }
 
 TEST(BuildFdem3, CorrelatedStrengthIsAFunctionOfThePlace) {
