@@ -44,6 +44,9 @@ laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) c
   workers.force = force;
   workers.allow_scripts = allow_scripts;
   if (device == "cpu") return workers;
+  if (!device.starts_with("cuda"))
+    throw InputError(
+        fmt::format("--device {}: there are cpu, cuda and cuda:N; nothing was run", device));
   if (device == "cuda") {
     const int there = device_count();
     if (there == 0)

@@ -24,6 +24,22 @@ namespace {
 
 namespace lab = laboratory;
 
+/// A case at a point of the sweep. Its problems name the option that a value came from.
+Case case_at(const std::string& path, const std::vector<std::string>& overrides,
+             const std::vector<lab::SweepAxis>& axes) {
+  try {
+    return load_case(path, overrides);
+  } catch (const InputError& error) {
+    std::string text = error.what();
+    for (const lab::SweepAxis& axis : axes) {
+      const std::string set = "--set " + axis.key;
+      for (std::size_t at = text.find(set); at != std::string::npos; at = text.find(set, at + 1))
+        text.replace(at, 5, "--over");
+    }
+    throw InputError(text);
+  }
+}
+
 struct SweepCommand {
   std::string path, folder;
   std::vector<std::string> over, measures, overrides;
@@ -47,7 +63,7 @@ struct SweepCommand {
       run.case_path = path;
       run.overrides = overrides;
       for (const std::string& text : point.overrides(axes)) run.overrides.push_back(text);
-      const Case read = load_case(path, run.overrides);
+      const Case read = case_at(path, run.overrides, axes);
       run.digest = read.digest;
       for (const std::string& note : read.notes)
         if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
@@ -59,7 +75,8 @@ struct SweepCommand {
     const lab::Workers workers = options.workers(runs.size(), bytes);
     make_folder(out);
     tell_notes(notes);
-    fmt::print("{}: {} runs, {} at a time\n", harmless(base.name), runs.size(), workers.jobs);
+    fmt::print("{}: {} run{}, {} at a time\n", harmless(base.name), runs.size(),
+               runs.size() == 1 ? "" : "s", workers.jobs);
     const auto results = lab::run_side_by_side(runs, workers, tell_of(runs));
     int exit_code = 0;
     for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -56,7 +56,14 @@ MaterialTarget target_from(const std::string& text) {
 std::vector<MaterialTarget> all_targets(const std::vector<std::string>& texts,
                                         const std::string& use) {
   std::vector<MaterialTarget> all;
-  for (const std::string& text : texts) all.push_back(target_from(text));
+  for (const std::string& text : texts) {
+    const MaterialTarget target = target_from(text);
+    if (std::any_of(all.begin(), all.end(),
+                    [&](const MaterialTarget& other) { return other.name == target.name; }))
+      throw InputError(
+          fmt::format("--target {}: {} is asked for twice; nothing was run", text, target.name));
+    all.push_back(target);
+  }
   if (const NamedMaterial* const named = use.empty() ? nullptr : named_material(use))
     all.insert(all.end(), named->targets.begin(), named->targets.end());
   return all;

@@ -111,9 +111,12 @@ struct TestCommand {
         tests.push_back(test);
     }
     for (const std::string& name : only)
-      if (!names.contains(name))
+      if (!names.contains(name)) {
+        const std::string near = suggestion(name, names);
         throw InputError(fmt::format("--only {}: no such test{}; nothing was run\n  there are {}",
-                                     name, suggestion(name, names), fmt::join(names, ", ")));
+                                     name, near.starts_with("; did you") ? near : "",
+                                     fmt::join(names, ", ")));
+      }
     return tests;
   }
 

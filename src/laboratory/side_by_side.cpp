@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -106,6 +107,19 @@ std::string mute_end(int exit_code) {
                        : fmt::format("exit code {}", exit_code);
 }
 
+/// The first line that has words, as in what mpirun says below a line of dashes.
+std::string first_words(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, std::min<std::size_t>(end - at, 120));
+    if (std::any_of(line.begin(), line.end(),
+                    [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }))
+      return ": " + line;
+    at = end + 1;
+  }
+  return "";
+}
+
 /// The error that a run has told, without the word before it, with the first line below it that
 /// stands further in: the problem that the error counts.
 std::string told_error(const std::string& log, int exit_code) {
@@ -121,6 +135,7 @@ std::string told_error(const std::string& log, int exit_code) {
       const std::size_t first = below.find_first_not_of(' ');
       return first == 0 || first == std::string::npos ? error : error + ": " + below.substr(first);
     }
+    return mute_end(exit_code) + first_words(text);
   } catch (const Error&) {
   }
   return mute_end(exit_code);
@@ -298,7 +313,7 @@ double taken_by(double model, int ranks) {
 }  // namespace
 
 bool FinishedRun::ended_mute() const {
-  return !complete() && message == mute_end(exit_code);
+  return !complete() && message.starts_with(mute_end(exit_code));
 }
 
 std::string log_beside(const std::string& folder) {

@@ -206,6 +206,10 @@ std::string SweepPoint::name(const std::vector<SweepAxis>& axes) const {
 
 std::vector<std::int64_t> sweep_seeds(std::vector<SweepAxis>& axes, std::int64_t first, int count) {
   std::vector<std::int64_t> seeds;
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    for (std::size_t before = 0; before < k; ++before)
+      if (axes[k].key == axes[before].key)
+        refuse(axes[k].key, "the key is varied twice; one list may hold all values");
   const auto axis = std::find_if(axes.begin(), axes.end(),
                                  [](const SweepAxis& one) { return one.key == "seed"; });
   if (axis == axes.end()) {

@@ -373,6 +373,7 @@ pack = { count = 100, compactness = 0.56 }
   refused("--target friction_angle=55",
           "55 rad is outside of 0 to 90 degrees; did you mean '55 deg'?");
   refused("--target 'poisson=20'", "20 is outside of 0 to 0.5");
+  refused("--target tension=4e6", "tension is asked for twice");
   refused("--first-seed -3", "--first-seed");
   EXPECT_EQ(
       wait_for(start_program("test '" + scratch / "c.toml' --material d", scratch / "output.txt")),

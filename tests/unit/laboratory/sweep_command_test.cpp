@@ -164,6 +164,13 @@ TEST_F(SweepCommand, GoesOnWithInterruptedRuns) {
 TEST_F(SweepCommand, RefusesWrongValuesBeforeAnythingRuns) {
   EXPECT_EQ(sweep("--over body.left.radius=0.01,-1"), 2);
   EXPECT_NE(output().find("radius = -1 is outside"), std::string::npos) << output();
+  EXPECT_EQ(sweep("--over body.left.velocity=1,2"), 2);
+  EXPECT_NE(output().find("--over body.left.velocity wants three numbers"), std::string::npos)
+      << output();
+  EXPECT_EQ(sweep("--over time.end=0.001,0.002 --over time.end=0.003"), 2);
+  EXPECT_NE(output().find("the key is varied twice"), std::string::npos) << output();
+  EXPECT_EQ(sweep("--device gpu"), 2);
+  EXPECT_NE(output().find("--device gpu: there are cpu, cuda"), std::string::npos) << output();
   EXPECT_EQ(sweep("--over seed"), 2);
   EXPECT_EQ(sweep("--seeds 0"), 2);
   EXPECT_EQ(sweep("--over body.left.radius=0.01..0.02"), 2);
@@ -182,19 +189,19 @@ TEST_F(SweepCommand, TellsOfAMeasureThatNoRunHasAndKeepsTheRuns) {
 }
 
 TEST_F(SweepCommand, NamesTheLogOfARunThatEndsWithoutAnError) {
-  replace_file(scratch / "mute.sh", "#!/bin/sh\necho no ranks for root\nexit 1\n");
+  replace_file(scratch / "mute.sh", "#!/bin/sh\necho ----\necho no ranks for root\nexit 1\n");
   fs::permissions(scratch / "mute.sh", fs::perms::owner_all);
   const int exit_code = wait_for(start_program(
       "sweep '" + scratch / "balls.toml' --ranks 2 -o '" + scratch / "out'", scratch / "output.txt",
       "BRECCIA_MPIRUN='" + scratch / "mute.sh'; export BRECCIA_MPIRUN;"));
   if (output().find("has no MPI") != std::string::npos) GTEST_SKIP() << output();
   EXPECT_EQ(exit_code, 1);
-  const std::string words = "seed=1: exit code 1; all it said: ";
+  const std::string words = "seed=1: exit code 1: no ranks for root; all it said: ";
   const std::size_t at = output().find(words);
   ASSERT_NE(at, std::string::npos) << output();
   const std::size_t begin = at + words.size();
   EXPECT_EQ(read_whole_file(output().substr(begin, output().find('\n', begin) - begin)),
-            "no ranks for root\n");
+            "----\nno ranks for root\n");
 }
 
 TEST(GpusForRuns, AreDealtOneEachOrAsManyAsARunHasRanks) {
