@@ -466,8 +466,8 @@ TEST(CheckCommand, tells_which_methods_have_a_key) {
       told("fdem3d", "[[bolt]]\nname = \"a\"\n"),
       "bolt is not a key of fdem3d; fdem2d has it\n    bars are of spheres, in a case of both "
       "methods");
-  EXPECT_EQ(told("dem3d", "body = [{ name = \"a\", grains = { kind = \"voronoi\" } }]\n"),
-            "body.a.grains is not a key of dem3d; fdem2d and fdem3d have it");
+  EXPECT_EQ(told("dem3d", "body = [{ name = \"a\", weibull = { modulus = 4.0 } }]\n"),
+            "body.a.weibull is not a key of dem3d; fdem2d and fdem3d have it");
   EXPECT_EQ(told("fdem2d", "links.range = 1.4\n"), "links is not a key of fdem2d; dem3d has it");
   EXPECT_EQ(told("dem3d", "[[bodi]]\nname = \"a\"\n"),
             "bodi is not a key; did you mean body? (corrected)");
