@@ -131,7 +131,7 @@ struct CriticalOfRow {
 }  // namespace
 
 void note_stable_step(World& w) {
-  const fdem3::World& t = *w.tetrahedra;
+  fdem3::World& t = *w.tetrahedra;
   if (t.step % t.given->time.evaluate_every == 0) w.stable_step = fdem3::choose_time_step(t);
 }
 

@@ -51,12 +51,14 @@ struct Case {
   bool plane_strain = false;   ///< nothing moves out of the plane; else there is no stress
   double local_damping = 0.0;  ///< stage  [-]
   double mean_edge = 0.0;      ///<  [m]
-  double skin = 0.0;           ///< margin of the search between two triangles at rest  [m]
-  bool conservative = false;   ///< whether forces of contact are
-  Rebound rebound;             ///< what contacts give back
-  bool extrinsic = false;      ///< some joints are dormant, or were
-  MoreFields shown;            ///< in frames
-  Index materials = 0;         ///< how many there are  [-]
+  double free_step = 0.0;  ///< stable one of all at the start without contact, where corners move
+                           ///< as one; else 0  [s]
+  double skin = 0.0;       ///< margin of the search between two triangles at rest  [m]
+  bool conservative = false;  ///< whether forces of contact are
+  Rebound rebound;            ///< what contacts give back
+  bool extrinsic = false;     ///< some joints are dormant, or were
+  MoreFields shown;           ///< in frames
+  Index materials = 0;        ///< how many there are  [-]
 
   std::vector<std::string> groups;             ///< names of bodies  (bodies)
   std::vector<std::uint8_t> removed;           ///< stage; 1: taken out by now  (bodies)

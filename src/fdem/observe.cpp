@@ -112,6 +112,6 @@ template Unsound find_unsound(const fdem::World&);
 template Fastest fastest(const fdem::World&);
 template std::vector<double> damage(const fdem::World&);
 template RuledStep ruled_step(const fdem::World&, bool);
-template std::vector<double> stable_steps(const fdem::World&);
+template std::vector<StepOfElement> stable_steps(const fdem::World&);
 
 }  // namespace breccia::fdem_shared

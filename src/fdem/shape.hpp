@@ -85,6 +85,8 @@ struct Shape {
   /// corner of a body.  [N/m2]
   BR_HD static double pressed_corner(double penalty, const Mat2&) { return 2.3 * penalty; }
 
+  /// Whether rows of other methods come to those of corners, one element at a time.
+  static bool meets_spheres(const World&) { return false; }
   /// Of what a support holds as a whole.
   static bool contact_alone_presses(const World& w) { return w.triangles.external.size() == 0; }
 

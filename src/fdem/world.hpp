@@ -21,6 +21,7 @@
 #include "fdem/triangles/loads.hpp"
 #include "fdem_shared/busy_couples.hpp"
 #include "fdem_shared/exposed.hpp"
+#include "fdem_shared/stable_parts.hpp"
 
 namespace breccia::fdem {
 
@@ -90,7 +91,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, busy.couple, busy.count);
+         device_flags, busy.couple, busy.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -127,6 +128,8 @@ struct World {
   Bundles bundles;  ///< corners that may move as one (set-up, ranks); leaders: (derive, insertion)
   Buffer<Index> node_vertex;           ///< `vertex`, for kernels (3 triangles; search)
   Buffer<Index> side_across;           ///< `across`, for kernels (3 triangles; search)
+  Buffer<std::uint8_t> ringed;         ///< 1: of each corner in `bundles` (3 triangles, none if
+                                       ///< there are no bundles; derive)
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
@@ -143,7 +146,10 @@ struct World {
   Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
                                  ///< (joints; insertion)
   Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached  [-]  (1; insertion)
-  bool margin_used = false;      ///< some own triangle has used its margin up (move)
+  Buffer<fdem_shared::RowsOfCorners<fdem_shared::RowSums, 3>> rows;  ///< where corners move as one
+                                                                     ///< (triangles; dt)
+  double least_step = 0.0;   ///< stable one of all, when last evaluated  [s]  (dt)
+  bool margin_used = false;  ///< some own triangle has used its margin up (move)
   /// Of each joint_pack joints; empty: all of them wait for ghosts. On the host. (joints /
   /// joint_pack; ranks; `done` within a step: pairs)
   std::vector<JointPack> joint_packs;
@@ -204,9 +210,9 @@ MarginRule margin_rule(const World& w);
 void find_couples(World& w);
 void wake_joints(World& w);
 /// Safe share of the stable step of all triangles, rounded down to six bits.  [s]
-double choose_time_step(const World& w);
+double choose_time_step(World& w);
 /// The step to come, or less where these triangles allow less: after their joints have changed.
-double shortened_time_step(const World& w, const Buffer<Index>& triangles);
+double shortened_time_step(World& w, const Buffer<Index>& triangles);
 void evaluate_forces(World& w);
 
 Kick kick(const World& w);

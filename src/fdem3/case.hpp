@@ -58,12 +58,14 @@ struct Case {
   InSituConfig in_situ;        ///< stress at the start
   double local_damping = 0.0;  ///< stage  [-]
   double mean_edge = 0.0;      ///<  [m]
-  double skin = 0.0;           ///< margin of the search between two at rest  [m]
-  bool extrinsic = false;      ///< some joints are dormant, or were
-  bool bedded = false;         ///< some rock is stiffer in one direction than in others
-  MoreFields shown;            ///< in frames
-  EmissionConfig emission;     ///< which breaks are one event
-  Index materials = 0;         ///< how many there are  [-]
+  double free_step = 0.0;   ///< stable one of all at the start without contact, where corners move
+                            ///< as one; else 0  [s]
+  double skin = 0.0;        ///< margin of the search between two at rest  [m]
+  bool extrinsic = false;   ///< some joints are dormant, or were
+  bool bedded = false;      ///< some rock is stiffer in one direction than in others
+  MoreFields shown;         ///< in frames
+  EmissionConfig emission;  ///< which breaks are one event
+  Index materials = 0;      ///< how many there are  [-]
 
   std::vector<std::string> groups;            ///< names of bodies  (bodies)
   std::vector<std::uint8_t> removed;          ///< stage; 1: taken out by now  (bodies)

@@ -111,6 +111,6 @@ template Unsound find_unsound(const fdem3::World&);
 template Fastest fastest(const fdem3::World&);
 template std::vector<double> damage(const fdem3::World&);
 template RuledStep ruled_step(const fdem3::World&, bool);
-template std::vector<double> stable_steps(const fdem3::World&);
+template std::vector<StepOfElement> stable_steps(const fdem3::World&);
 
 }  // namespace breccia::fdem_shared

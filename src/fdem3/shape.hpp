@@ -85,6 +85,8 @@ struct Shape {
     return 1.83 * penalty * size * size;
   }
 
+  /// Whether rows of other methods come to those of corners, one element at a time.
+  static bool meets_spheres(const World& w) { return w.meets_spheres; }
   /// Of what a support holds as a whole: no loads, no spheres.
   static bool contact_alone_presses(const World& w) {
     return w.tetrahedra.external.size() == 0 && !w.meets_spheres;

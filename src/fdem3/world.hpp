@@ -21,6 +21,7 @@
 #include "fdem3/setup/model.hpp"
 #include "fdem_shared/busy_couples.hpp"
 #include "fdem_shared/exposed.hpp"
+#include "fdem_shared/stable_parts.hpp"
 
 namespace breccia::fdem3 {
 
@@ -66,7 +67,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, busy.couple, busy.count);
+         device_flags, busy.couple, busy.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -101,6 +102,8 @@ struct World {
   Bundles bundles;  ///< corners that may move as one (set-up, ranks); leaders: (derive, insertion)
   Buffer<Index> node_vertex;           ///< `vertex`, for kernels (4 tetrahedra; search)
   Buffer<Index> side_across;           ///< `across`, for kernels (4 tetrahedra; derive)
+  Buffer<std::uint8_t> ringed;         ///< 1: of each corner in `bundles` (4 tetrahedra, none if
+                                       ///< there are no bundles; derive)
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
@@ -117,7 +120,10 @@ struct World {
   Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
                                  ///< (joints; insertion)
   Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached  [-]  (1; insertion)
-  bool margin_used = false;      ///< some own tetrahedron has used its margin up (move)
+  Buffer<fdem_shared::RowsOfCorners<fdem_shared::RowSums, 4>> rows;  ///< where corners move as one
+                                                                     ///< (tetrahedra; dt)
+  double least_step = 0.0;   ///< stable one of all, when last evaluated  [s]  (dt)
+  bool margin_used = false;  ///< some own tetrahedron has used its margin up (move)
 
   // On a device: see fdem/world.hpp.
   Buffer<Motion> last_motions;                        ///< (motions; bundles)
@@ -174,9 +180,9 @@ bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
 /// Safe share of the stable step of all, rounded down to six bits.  [s]
-double choose_time_step(const World& w);
+double choose_time_step(World& w);
 /// The step to come, or less where these allow less: after their joints have changed.
-double shortened_time_step(const World& w, const Buffer<Index>& tetrahedra);
+double shortened_time_step(World& w, const Buffer<Index>& tetrahedra);
 /// Wakes joints whose strength is reached.
 void wake_joints(World& w);
 void evaluate_forces(World& w);

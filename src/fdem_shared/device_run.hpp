@@ -113,7 +113,8 @@ struct MoveAndWatch {
   }
 };
 
-/// The stable step of every n-th element, n threads in all; nothing between two evaluations.
+/// The stable step of every n-th element, or ring, n threads in all; nothing between two
+/// evaluations.
 template <class StableStep>
 struct NoteStable {
   static constexpr const char* name = "fdem.note_stable";
@@ -122,7 +123,10 @@ struct NoteStable {
   int evaluate_every;
   NoteLeast note;
   std::int64_t step = 0;
-  BR_HD void set(const StepTime& now) { step = now.step; }
+  BR_HD void set(const StepTime& now) {
+    step = now.step;
+    if constexpr (requires { stable.set(now); }) stable.set(now);
+  }
   BR_HD void operator()(Index i) const {
     if (step % evaluate_every != 0) return;
     double least = largest_least;
@@ -221,11 +225,15 @@ class ClockedRun : public ClockLed {
   void pair_forces(World& w) const { Launches::pairs(w, timed_); }
   /// Notes the stable step, too.
   void sum_forces(World& w) const {
-    constexpr Index most_threads = 132 * 128;
     const Index elements = Shape::elements(w).size();
-    const Index threads = elements < most_threads ? elements : most_threads;
-    const NoteStable<decltype(stable_step(w))> stable{
-        stable_step(w), elements, threads, w.given->time.evaluate_every, {clocks_.now}};
+    if (bundles_bound(w))
+      sum_and_note(w, noting(w, list_rows_kernel(w, w.rows, 0.0, Pressed::soon), elements));
+    else
+      sum_and_note(w, noting(w, stable_step(w), elements));
+  }
+  template <class Stable>
+  void sum_and_note(World& w, const NoteStable<Stable>& stable) const {
+    const Index elements = Shape::elements(w).size(), threads = stable.threads;
     Launches::with_sums(w, [&](const auto& kernel) {
       using Kernel = std::remove_cvref_t<decltype(kernel)>;
       if constexpr (Launches::blocks_of_sums > 0)
@@ -255,11 +263,20 @@ class ClockedRun : public ClockLed {
     const ScaleNextMotions<Shape> next{scale_motions(w), w.last_motions.view(), end_of_step(w),
                                        clocks_.now};
     const Index threads = (w.bundles.starts.size() - 1) * Launches::lanes;
-    for_each_part(w.exec, part(scales_next(w) ? w.motions.size() : 0, next,
+    const auto noted = noting(w, least_of_ring_kernel(w, w.rows), count_rings(w));
+    for_each_part(w.exec, part(noted.threads, timed_(noted),
                                part(threads, timed_(Launches::bundles(w)), Parts<>{})));
+    if (scales_next(w)) for_each(w.exec, w.motions.size(), next);
   }
 
  private:
+  template <class Stable>
+  NoteStable<Stable> noting(const World& w, const Stable& stable, Index count) const {
+    constexpr Index most_threads = 132 * 128;
+    return {
+        stable, count, std::min(count, most_threads), w.given->time.evaluate_every, {clocks_.now}};
+  }
+
   StepClocks clocks_;
   ByClock<phase> timed_;
 };

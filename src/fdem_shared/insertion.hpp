@@ -10,6 +10,7 @@
 #include "domain/owned.hpp"
 #include "domain/together.hpp"
 #include "exec/timers.hpp"
+#include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/insertion_kernels.hpp"
 
 namespace breccia::fdem_shared {
@@ -100,9 +101,19 @@ Woken wake(World& w, const Buffer<Index>& joints) {
   return {std::move(elements), std::move(vertices)};
 }
 
+/// Marks the corners that rings hold.
+template <class World>
+void mark_ringed(World& w) {
+  w.ringed.resize(0);
+  if (w.bundles.nodes.size() == 0) return;
+  w.ringed.resize(ShapeOf<World>::corners * ShapeOf<World>::elements(w).size());
+  for_each(w.exec, w.bundles.nodes.size(), MarkRinged{w.bundles.nodes.view(), w.ringed.view()});
+}
+
 /// Ties the corners that move together, around all vertices or around changed ones.
 template <class World>
 void tie_corners(World& w, bool all, const std::vector<Index>& changed) {
+  if (all) mark_ringed(w);
   if (w.bundles.starts.size() < 2) return;
   if (static_cast<std::size_t>(w.side_across.size()) != w.across.size())
     copy_to(w.side_across, w.across);

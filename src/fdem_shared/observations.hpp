@@ -10,6 +10,7 @@
 #include "core/pieces.hpp"
 #include "core/state_hash.hpp"
 #include "domain/owned.hpp"
+#include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -260,16 +261,31 @@ inline OrderedPieces by_mass(Pieces& pieces, const std::vector<double>& mass) {
   return ordered;
 }
 
+/// The parts of the least stable step.
 template <class World>
-RuledStep ruled_step(const World& w, bool pressed) {
-  using Shape = ShapeOf<World>;
+StepParts ruling_parts(const World& w, bool pressed) {
+  const Index count = ShapeOf<World>::elements(w).size();
+  if (bundles_bound(w)) {
+    Buffer<RowsOfCorners<StepParts, ShapeOf<World>::corners>> rows(w.exec.space);
+    const StepParts alone = fold(w.exec, count, StepParts{},
+                                 list_rows_kernel(w, rows, longest_step(w)(w.last_dt),
+                                                  pressed ? Pressed::everywhere : Pressed::soon),
+                                 Least{});
+    const StepParts tied =
+        fold(w.exec, count_rings(w), StepParts{}, least_of_ring_kernel(w, rows), Least{});
+    return Least{}(alone, tied);
+  }
   const auto stable = stable_step(w);
   using StableStep = std::remove_cv_t<decltype(stable)>;
   Ruling<StableStep> none;
   none.parts.step = no_limit;
-  const typename StableStep::Parts least =
-      fold(w.exec, Shape::elements(w).size(), none, RulingOf<StableStep>{stable, pressed}, Least{})
-          .parts;
+  return fold(w.exec, count, none, RulingOf<StableStep>{stable, pressed}, Least{}).parts;
+}
+
+template <class World>
+RuledStep ruled_step(const World& w, bool pressed) {
+  using Shape = ShapeOf<World>;
+  const StepParts least = ruling_parts(w, pressed);
   const double undamped = 2.0 / std::sqrt(least.square);
   const char* term = least.joint >= least.contact ? "joints" : "contact";
   if (least.element >= least.joint && least.element >= least.contact) term = "elements";
@@ -278,22 +294,79 @@ RuledStep ruled_step(const World& w, bool pressed) {
   return {least.step, term};
 }
 
-template <class StableStep>
+/// The steps of corners.
+template <int corners>
+struct StepsOfCorners {
+  StepOfElement at[corners];
+};
+template <class StableStep, int corners>
 struct ListSteps {
   static constexpr const char* name = "fdem.list_steps";
   StableStep stable;
-  View<double> step;
-  BR_HD void operator()(Index t) const { step[t] = stable(t); }
+  View<StepsOfCorners<corners>> step;
+  BR_HD void operator()(Index t) const {
+    for (StepOfElement& of : step[t].at) of = {stable(t), stable.mass[t]};
+  }
+};
+/// Of corners that move by themselves; others get none.
+template <class List, int corners>
+struct ListStepsOfCorners {
+  static constexpr const char* name = "fdem.list_steps_of_corners";
+  List list;
+  View<StepsOfCorners<corners>> step;
+  BR_HD void operator()(Index t) const {
+    list(t);
+    const double mass = list.stable.mass[t];
+    for (int k = 0; k < corners; ++k)
+      step[t].at[k] = list.goes_with_others(t, k) || list.stable.is_held(t, k)
+                          ? StepOfElement{largest_least, 0.0}
+                          : StepOfElement{bound_of(list.rows[t].at[k], mass), mass};
+  }
+};
+template <class Each, int corners>
+struct ListStepsOfRing {
+  static constexpr const char* name = "fdem.list_steps_of_rings";
+  Each each;
+  View<StepsOfCorners<corners>> step;
+  BR_HD void operator()(Index ring) const {
+    const Index end = each.starts[ring + 1];
+    each(ring, [this, end](Index first, double bound, double mass, const RowSums& sum) {
+      for (Index k = first; k < end; ++k) {
+        if (each.leader[k] != first) continue;
+        const Index t = each.nodes[k] / corners, corner = each.nodes[k] % corners;
+        step[t].at[corner] = {bound, mass * (each.rows[t].at[corner].stiffness / sum.stiffness)};
+      }
+    });
+  }
 };
 
 template <class World>
-std::vector<double> stable_steps(const World& w) {
-  Buffer<double> listed(w.exec.space, ShapeOf<World>::elements(w).size());
-  const auto stable = stable_step(w);
-  for_each(w.exec, listed.size(),
-           ListSteps<std::remove_cv_t<decltype(stable)>>{stable, listed.view()});
-  std::vector<double> steps;
-  copy_to(steps, listed);
+std::vector<StepOfElement> stable_steps(const World& w) {
+  constexpr int corners = ShapeOf<World>::corners;
+  Buffer<StepsOfCorners<corners>> listed(w.exec.space, ShapeOf<World>::elements(w).size());
+  if (bundles_bound(w)) {
+    Buffer<RowsOfCorners<RowSums, corners>> rows(w.exec.space);
+    const auto list = list_rows_kernel(w, rows, longest_step(w)(w.last_dt), Pressed::soon);
+    for_each(w.exec, listed.size(),
+             ListStepsOfCorners<std::remove_cv_t<decltype(list)>, corners>{list, listed.view()});
+    const auto each = each_bundle(w, rows);
+    for_each(w.exec, count_rings(w),
+             ListStepsOfRing<std::remove_cv_t<decltype(each)>, corners>{each, listed.view()});
+  } else {
+    const auto stable = stable_step(w);
+    for_each(w.exec, listed.size(),
+             ListSteps<std::remove_cv_t<decltype(stable)>, corners>{stable, listed.view()});
+  }
+  std::vector<StepsOfCorners<corners>> of_corners;
+  copy_to(of_corners, listed);
+  std::vector<StepOfElement> steps;
+  steps.reserve(of_corners.size());
+  for (const StepsOfCorners<corners>& of : of_corners) {
+    StepOfElement least{largest_least, 0.0};
+    for (const StepOfElement& corner : of.at)
+      least = {std::min(least.step, corner.step), std::max(least.bears, corner.bears)};
+    steps.push_back(least);
+  }
   return steps;
 }
 

@@ -50,9 +50,15 @@ struct RuledStep {
 /// @param pressed  as if something touched wherever it can
 template <class World>
 RuledStep ruled_step(const World& w, bool pressed);
-/// Stable step of each element, with the joints and contacts that it has now.  [s]
+/// The stable step of an element, with the joints and contacts that it has now, and the mass that
+/// bounds it.
+struct StepOfElement {
+  double step;   ///< the least of its corners, with all that move with them  [s]
+  double bears;  ///< of a corner by itself its own; where corners move as one, of all their mass
+                 ///< its share by rows: the more it has of them, the more of it  [kg], [kg/m]
+};
 template <class World>
-std::vector<double> stable_steps(const World& w);
+std::vector<StepOfElement> stable_steps(const World& w);
 /// Which term rules the time step now: elements, joints, contact or viscosity.
 template <class World>
 const char* ruling_term(const World& w) {

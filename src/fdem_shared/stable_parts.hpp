@@ -3,6 +3,8 @@
 // sum of a row's |stiffness| over its mass. One text for triangles and tetrahedra, whose joints and
 // contacts each adds by itself.
 
+#include <cstdint>
+
 #include "math/vec.hpp"
 #include "math/vec2.hpp"
 
@@ -29,6 +31,53 @@ struct StepParts {
     square = (element + joint + contact) / mass;
     step = stable_step_of(square, viscous + absorbed, mass);
   }
+  BR_HD bool operator<(const StepParts& other) const {
+    if (step != other.step) return step < other.step;
+    return square != other.square ? square > other.square : element > other.element;
+  }
+  /// Of corners that move as one.
+  BR_HD void add(const StepParts& other) {
+    element += other.element;
+    joint += other.joint;
+    contact += other.contact;
+    viscous += other.viscous;
+    absorbed += other.absorbed;
+  }
+};
+
+/// Sums of the rows of a corner: all of StepParts that a step needs.
+struct RowSums {
+  double stiffness = 0.0;  ///<  [N/m]
+  double lost = 0.0;       ///<  [N s/m]
+
+  RowSums() = default;
+  BR_HD explicit RowSums(const StepParts& p)
+      : stiffness(p.element + p.joint + p.contact), lost(p.viscous + p.absorbed) {}
+  BR_HD void add(const RowSums& other) {
+    stiffness += other.stiffness;
+    lost += other.lost;
+  }
+};
+
+/// The step of a mass by its rows, and that of no mass.
+BR_HD inline double bound_of(const RowSums& rows, double mass) {
+  return stable_step_of(rows.stiffness / mass, rows.lost, mass);
+}
+BR_HD inline StepParts bound_of(StepParts rows, double mass) {
+  rows.finish(mass);
+  return rows;
+}
+BR_HD inline double no_bound(const RowSums&) {
+  return 1e300;
+}
+BR_HD inline StepParts no_bound(const StepParts&) {
+  return {};
+}
+
+/// The rows of an element's corners.
+template <class Rows, int corners>
+struct RowsOfCorners {
+  Rows at[corners];
 };
 
 BR_HD inline void list(const Vec2& v, double (&component)[2]) {
@@ -76,20 +125,32 @@ BR_HD void add_element(StepParts& p, const Vector (&slope)[dim + 1], int i,
   }
 }
 
-/// Contact counts at sides that another element is near to; at all that can touch of an element so
-/// fast that it might pass the reach of that before the next evaluation.
-/// @param rows  parts of the element with contact at the sides of these bits
+/// Where contact counts in a stable step: nowhere; where something may touch until the next
+/// evaluation; as if something were near everywhere.
+enum class Pressed : std::uint8_t { nowhere, soon, everywhere };
+
+/// Bits of the sides at which contact counts: those that another element is near to; all that can
+/// touch of an element so fast that it might pass the reach of that before the next evaluation.
+/// @param span  no longer until that  [s]
 /// @param reach  called if needed  [m]
+template <int corners, class Vector, class Reach>
+BR_HD int pressed_until_next(int near, int exposed, const Vector (&velocity)[corners], double span,
+                             const Reach& reach) {
+  if (near == exposed) return near;
+  double fastest = 0.0;
+  for (int k = 0; k < corners; ++k) fastest = max(fastest, dot(velocity[k], velocity[k]));
+  return span * sqrt(fastest) > reach() ? exposed : near;
+}
+
+/// The parts of an element that moves by itself, with contact as above.
+/// @param rows  parts of the element with contact at the sides of these bits
 template <int corners, class Rows, class Vector, class Reach>
 BR_HD StepParts parts_until_next(const Rows& rows, int near, int exposed,
                                  const Vector (&velocity)[corners], int evaluate_every,
                                  const Reach& reach) {
   const StepParts least = rows(near);
-  if (near == exposed) return least;
-  double fastest = 0.0;
-  for (int k = 0; k < corners; ++k) fastest = max(fastest, dot(velocity[k], velocity[k]));
-  const double way = evaluate_every * least.step * sqrt(fastest);
-  return way > reach() ? rows(exposed) : least;
+  const double span = evaluate_every * least.step;
+  return pressed_until_next(near, exposed, velocity, span, reach) == near ? least : rows(exposed);
 }
 
 }  // namespace breccia::fdem_shared

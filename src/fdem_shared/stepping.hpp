@@ -8,6 +8,7 @@
 #include "core/stepping.hpp"
 #include "domain/owned.hpp"
 #include "exec/timers.hpp"
+#include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/ranks.hpp"
 #include "fdem_shared/shape.hpp"
 #include "fdem_shared/stepwise_run.hpp"
@@ -80,17 +81,21 @@ AllowedStep world_allowed_step(const World& w) {
 
 /// Safe share of the stable step of all elements, rounded down to six bits.  [s]
 template <class World>
-double world_time_step(const World& w) {
+double world_time_step(World& w) {
   const StageTime timed(w.exec, "time_step");
   const Index count = ShapeOf<World>::elements(w).size();
-  const double least =
-      w.domain.least(fold_owned(w.exec, w.domain, count, largest_least, stable_step(w), Least{}));
-  return world_allowed_step(w)(least, w.last_dt);
+  w.least_step = bundles_bound(w)
+                     ? least_step_of_corners(w, Pressed::soon)
+                     : w.domain.least(fold_owned(w.exec, w.domain, count, largest_least,
+                                                 stable_step(w), Least{}));
+  return world_allowed_step(w)(w.least_step, w.last_dt);
 }
 
-/// The step to come, or less where these elements allow less: after their joints have changed.
+/// The step to come, or less where these elements allow less: after their joints have changed. What
+/// moves with them may have lost mass: where corners move as one, all are asked.
 template <class World>
-double world_shortened_step(const World& w, const Buffer<Index>& listed) {
+double world_shortened_step(World& w, const Buffer<Index>& listed) {
+  if (bundles_bound(w)) return std::min(w.next_dt, world_time_step(w));
   const StageTime timed(w.exec, "time_step");
   using Stable = ListedStableStep<decltype(stable_step(w))>;
   const Stable stable{stable_step(w), listed.view()};

@@ -104,6 +104,7 @@ World::World(dem::World& of_spheres, fdem3::World& of_tetrahedra)
 World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrahedra) {
   World w(spheres, tetrahedra);
   tetrahedra.meets_spheres = true;
+  tetrahedra.next_dt = fdem3::choose_time_step(tetrahedra);
   const Space space = spheres.exec.space;
   Case& given = w.given.change(SetUp{});
   given.safety = config.time.safety;

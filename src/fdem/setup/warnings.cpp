@@ -20,7 +20,9 @@ Vec2 middle(const TriangleNodes& nodes) {
 /// A triangle that makes the steps of all others short.
 void look_for_slivers(const World& w, std::vector<std::string>& found) {
   constexpr double factor = 10.0;
-  std::vector<double> steps = fdem_shared::stable_steps(w);
+  std::vector<double> steps;
+  for (const fdem_shared::StepOfElement& of : fdem_shared::stable_steps(w))
+    steps.push_back(of.step);
   const auto ruling =
       static_cast<Index>(std::min_element(steps.begin(), steps.end()) - steps.begin());
   const double least = steps[at(ruling)];

@@ -215,30 +215,58 @@ struct StableStep {
                                          near, exposed, v, evaluate_every,
                                          [&, this] { return nearness.reach(t); });
   }
+  /// The rows of its corners, held ones too, whatever they move with.
+  /// @param longest  no step until the next evaluation is longer  [s]
+  BR_HD void list(Index t, double longest, fdem_shared::Pressed where, Parts (&corner)[3]) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    int pressed = where == fdem_shared::Pressed::nowhere ? 0 : exposed_edges(t);
+    if (pressed != 0 && where == fdem_shared::Pressed::soon)
+      pressed = fdem_shared::pressed_until_next(near_edges(t, x, pressed), pressed, v,
+                                                evaluate_every * longest,
+                                                [&, this] { return nearness.reach(t); });
+    const Form form(*this, t, x, pressed);
+    for (int i = 0; i < 3; ++i) corner[i] = form.row(*this, t, x, i);
+  }
+  /// Whether a corner goes where it is told, whatever its mass.
+  BR_HD bool is_held(Index t, int corner) const {
+    return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 3;
+  }
 
  private:
-  /// @param pressed  bits of the edges whose contact counts
-  BR_HD Parts parts(Index t, const Vec2 (&x)[3], int pressed) const {
-    const ElasticTriangle& law = laws[law_of[t]];
-    const Target shape = Target::of(x);
-    const double area = 0.5 / shape.over_double;
-    const Vec2 slope[3] = {shape.slope(0), shape.slope(1), shape.slope(2)};
-    double on_edge[3][2];  // joint and contact stiffness of each edge
-    for (int k = 0; k < 3; ++k) {
-      on_edge[k][0] = joint_stiffness(t, k);
-      on_edge[k][1] = (pressed >> k & 1) != 0 ? contact_stiffness(t, k, x, area) : 0.0;
+  /// A triangle as it stands now, and the stiffness of its edges.
+  struct Form {
+    double area;
+    Vec2 slope[3];
+    double on_edge[3][2];  ///< of the joint and of contact
+    BR_HD Form(const StableStep& s, Index t, const Vec2 (&x)[3], int pressed) {
+      const Target shape = Target::of(x);
+      area = 0.5 / shape.over_double;
+      for (int k = 0; k < 3; ++k) {
+        slope[k] = shape.slope(k);
+        on_edge[k][0] = s.joint_stiffness(t, k);
+        on_edge[k][1] = (pressed >> k & 1) != 0 ? s.contact_stiffness(t, k, x, area) : 0.0;
+      }
     }
-    Parts largest;
-    for (int i = 0; i < 3; ++i) {
-      if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 3)
-        continue;  // goes where it is told, whatever its mass
+    BR_HD Parts row(const StableStep& s, Index t, const Vec2 (&x)[3], int i) const {
+      const ElasticTriangle& law = s.laws[s.law_of[t]];
       Parts p;
-      fdem_shared::add_element<2>(p, slope, i, {area, 1.0}, law.lambda, law.shear, viscosity[t]);
+      fdem_shared::add_element<2>(p, slope, i, {area, 1.0}, law.lambda, law.shear, s.viscosity[t]);
       if (law.is_bedded()) p.element += row_of_planes(slope, i, area, law);
       const int before = i == 0 ? 2 : i - 1;
-      if (dashpots.size > 0) p.absorbed = dashpot(t, i, x) + dashpot(t, before, x);
+      if (s.dashpots.size > 0) p.absorbed = s.dashpot(t, i, x) + s.dashpot(t, before, x);
       p.joint = on_edge[i][0] + on_edge[before][0];
       p.contact = on_edge[i][1] + on_edge[before][1];
+      return p;
+    }
+  };
+  /// @param pressed  bits of the edges whose contact counts
+  BR_HD Parts parts(Index t, const Vec2 (&x)[3], int pressed) const {
+    const Form form(*this, t, x, pressed);
+    Parts largest;
+    for (int i = 0; i < 3; ++i) {
+      if (is_held(t, i)) continue;
+      Parts p = form.row(*this, t, x, i);
       p.finish(mass[t]);
       if (p.step < largest.step) largest = p;
     }

@@ -52,6 +52,22 @@ struct StableStep {
                                          evaluate_every,
                                          [&, this] { return near_reach(shape[t]); });
   }
+  /// The rows of its corners, held ones too, whatever they move with.
+  /// @param longest  no step until the next evaluation is longer  [s]
+  BR_HD void list(Index t, double longest, fdem_shared::Pressed where, Parts (&corner)[4]) const {
+    Vec3 x[4], v[4];
+    split(nodes[t], x, v);
+    int pressed = where == fdem_shared::Pressed::nowhere ? 0 : exposed[t];
+    if (pressed != 0 && where == fdem_shared::Pressed::soon && !is_near(t, x))
+      pressed = fdem_shared::pressed_until_next(0, pressed, v, evaluate_every * longest,
+                                                [&, this] { return near_reach(shape[t]); });
+    const Form form(*this, t, x, pressed);
+    for (int i = 0; i < 4; ++i) corner[i] = form.row(*this, t, i);
+  }
+  /// Whether a corner goes where it is told, whatever its mass.
+  BR_HD bool is_held(Index t, int corner) const {
+    return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 7;
+  }
 
  private:
   /// Whether another tetrahedron is near. Searches list all pairs that may come as near as the sum
@@ -76,20 +92,29 @@ struct StableStep {
     return false;
   }
 
+  /// A tetrahedron as it stands now, and what its faces add to the rows of its corners.
+  struct Form {
+    Target target;
+    Parts of_faces[4];
+    BR_HD Form(const StableStep& s, Index t, const Vec3 (&x)[4], int pressed)
+        : target(Target::of(x)) {
+      for (int k = 0; k < 4; ++k) s.add_face(t, k, x, (pressed >> k & 1) != 0, of_faces);
+    }
+    BR_HD Parts row(const StableStep& s, Index t, int i) const {
+      const ElasticTetrahedron& law = s.laws[s.law_of[t]];
+      Parts p = of_faces[i];
+      fdem_shared::add_element<3>(p, target.slope, i, {1.0, target.six_volumes / 6.0},
+                                  law.bound_lambda(), law.bound_shear(), s.viscosity[t]);
+      return p;
+    }
+  };
   /// @param pressed  bits of the faces whose contact counts
   BR_HD Parts parts(Index t, const Vec3 (&x)[4], int pressed) const {
-    const ElasticTetrahedron& law = laws[law_of[t]];
-    const Target form = Target::of(x);
-    const double volume = form.six_volumes / 6.0;
-    Parts at_corner[4];
-    for (int k = 0; k < 4; ++k) add_face(t, k, x, (pressed >> k & 1) != 0, at_corner);
+    const Form form(*this, t, x, pressed);
     Parts largest;
     for (int i = 0; i < 4; ++i) {
-      if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 7)
-        continue;  // goes where it is told, whatever its mass
-      Parts p = at_corner[i];
-      fdem_shared::add_element<3>(p, form.slope, i, {1.0, volume}, law.bound_lambda(),
-                                  law.bound_shear(), viscosity[t]);
+      if (is_held(t, i)) continue;
+      Parts p = form.row(*this, t, i);
       p.finish(mass[t]);
       if (p.step < largest.step) largest = p;
     }

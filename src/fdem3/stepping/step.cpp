@@ -48,10 +48,10 @@ void list_motions(World& w) {
 AllowedStep allowed_step(const World& w) {
   return fdem_shared::world_allowed_step(w);
 }
-double choose_time_step(const World& w) {
+double choose_time_step(World& w) {
   return fdem_shared::world_time_step(w);
 }
-double shortened_time_step(const World& w, const Buffer<Index>& tetrahedra) {
+double shortened_time_step(World& w, const Buffer<Index>& tetrahedra) {
   return fdem_shared::world_shortened_step(w, tetrahedra);
 }
 

@@ -17,15 +17,22 @@ void add_mass_to_ruling(World& w) {
   auto& given = set_up(w);
   if (!(given.time.added_mass > 0.0)) return;
   auto& e = ShapeOf<World>::elements(w);
-  const std::vector<double> before = stable_steps(w);
-  std::vector<double> mass;
+  const std::vector<StepOfElement> before = stable_steps(w);
+  std::vector<double> step, bears, mass;
+  for (const StepOfElement& of : before) {
+    step.push_back(of.step);
+    bears.push_back(of.bears);
+  }
   copy_to(mass, e.mass);
-  given.added_mass = add_mass(given.time.added_mass, before, mass);
+  given.added_mass = add_mass(given.time.added_mass, step, bears, mass);
   if (given.added_mass.elements == 0) return;
   copy_to(e.mass, mass);
-  const std::vector<double> after = stable_steps(w);
-  given.added_mass.longer = *std::min_element(after.begin(), after.end()) /
-                            *std::min_element(before.begin(), before.end());
+  const auto least = [](const std::vector<StepOfElement>& of) {
+    return std::min_element(of.begin(), of.end(),
+                            [](const auto& a, const auto& b) { return a.step < b.step; })
+        ->step;
+  };
+  given.added_mass.longer = least(stable_steps(w)) / least(before);
 }
 
 }  // namespace breccia::fdem_shared
