@@ -1,5 +1,5 @@
 #pragma once
-// What a support prescribes to a corner at the moment: a velocity, and a turn about an axis.
+// The motion that a support gives to a corner now: a velocity, and a turn about an axis.
 
 #include "math/vec.hpp"
 #include "math/vec2.hpp"
@@ -26,7 +26,7 @@ BR_HD inline double squared(double spin) {
 BR_HD inline double squared(const Vec3& spin) {
   return dot(spin, spin);
 }
-/// What a turn gives to a place, by its arm from the axis.
+/// The velocity of a place by a turn, by its arm from the axis.
 BR_HD inline Vec2 carried(double spin, const Vec2& arm) {
   return {-spin * arm.y, spin * arm.x};
 }

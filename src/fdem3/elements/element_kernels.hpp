@@ -120,7 +120,7 @@ struct ElementForcesOf {
       force_on[3 * k + 2] = sum[k].z;
     }
   }
-  /// What the planes of a law add; nothing, to the bit, where it has none.
+  /// Share of the planes of a law; nothing, to the bit, where it has none.
   template <class R>
   BR_HD static void add_planes(const R (&law)[16], const Mat3Of<R>& f, Mat3Of<R>& piola) {
     const PlanesOf<R> planes{{law[8], law[9], law[10]}, law[11], law[12], law[13], {}, {}};

@@ -1,5 +1,5 @@
 #pragma once
-// What planes of bedding add to the law of a tetrahedron: transverse isotropy.
+// Planes of bedding in the law of a tetrahedron: transverse isotropy.
 
 #include "math/mat3.hpp"
 
@@ -39,7 +39,7 @@ struct PlanesOf {
   /// step; without bedding what they are more than the rock's own is 0.  [Pa]
   R more_lambda{}, more_shear{};
 
-  /// What they add to the first Piola tensor: F S.  [Pa]
+  /// Their share of the first Piola tensor: F S.  [Pa]
   BR_HD Mat3Of<R> piola(const Mat3Of<R>& f) const {
     const Vec3Of<R> to = f * across;  // F a
     const Vec3Of<R> strain{0.5 * (dot(f.a, to) - across.x), 0.5 * (dot(f.b, to) - across.y),

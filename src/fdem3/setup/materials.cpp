@@ -41,7 +41,7 @@ std::pair<double, double> even_bound(const SolidModuli& c, double shear) {
   return best;
 }
 
-/// What planes add to the law of a rock that is alike in all directions.
+/// Share of planes in the law of a rock that is alike in all directions otherwise.
 Planes planes_of(const MaterialConfig& m, const ElasticTetrahedron& even) {
   const SolidModuli c = moduli_of(m);
   Planes planes;
