@@ -13,7 +13,7 @@ std::string allowed(unsigned of) {
 
 }  // namespace
 
-std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of) {
+std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of, std::size_t axes) {
   using Kind = Quantity::Kind;
   std::vector<std::string> problems;
   const std::string where = "probe." + p.name;
@@ -35,7 +35,7 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of) {
           "; allowed: " + allowed(of));
     return problems;
   }
-  const std::size_t axes = of == in_plane || of == of_bolt ? 2 : 3;
+  if (axes == 0) axes = of == in_plane ? 2 : 3;
   const auto length = [&](const char* key, const std::vector<double>& value) {
     if (!value.empty() && value.size() != axes)
       add(std::string(".") + key + ": a point has " + std::to_string(axes) + " coordinates");

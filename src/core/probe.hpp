@@ -61,6 +61,6 @@ BR_HD inline Readings operator+(Readings a, const Readings& b) {
 struct ProbeConfig;
 /// Problems of a probe's quantity and of how it is read, as sentences.
 /// @param of  the bearer that it reads: elements in space or in the plane, or a wall
-std::vector<std::string> probe_problems(const ProbeConfig& probe, Bearer of);
+std::vector<std::string> probe_problems(const ProbeConfig& probe, Bearer of, std::size_t axes = 0);
 
 }  // namespace breccia

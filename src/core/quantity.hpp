@@ -56,7 +56,7 @@ enum Bearer : unsigned {
   in_plane = 2,    ///< corners, triangles and joints of the FDEM
   of_wall = 4,     ///< a wall of the DEM
   in_solid = 8,    ///< corners, tetrahedra and joints of the FDEM in three dimensions
-  of_bolt = 16,    ///< a bolt of the FDEM in the plane
+  of_bolt = 16,    ///< a bolt of the FDEM
   in_frames = 32,  ///< frames show it
   is_name = 64,    ///< likewise; its values are numbers of things, not sizes
   in_3d = in_space | in_solid,

@@ -14,13 +14,13 @@
 #include "core/gauge.hpp"
 #include "core/output_config.hpp"
 #include "exec/buffer.hpp"
-#include "fdem/bolts/bolts.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem/laws/explosive.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/triangles/loads.hpp"
 #include "fdem/triangles/motion.hpp"
+#include "fdem_shared/bolts/bolts.hpp"
 #include "fdem_shared/fluid/given.hpp"
 
 namespace breccia::fdem {
@@ -40,6 +40,7 @@ struct FluidSource : fdem_shared::FluidSource {
   double charge = 0.0;  ///< volume of the explosive per thickness  [m2]
 };
 
+using Bolt = fdem_shared::BoltOf<Vec2>;
 using FlowCase = fdem_shared::FlowCaseOf<LoadedEdge>;
 using CrackSide = fdem_shared::LineCrack;
 

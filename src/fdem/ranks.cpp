@@ -12,10 +12,7 @@ using fdem_shared::take_items;
 
 void Shape::take_common(World& w, Communicator& ranks) {
   fdem_shared::take_fluid(ranks, *w.given, w.fluid);
-  if (!w.given->bolts.empty()) {
-    take_from_first(ranks, w.bolts.time);
-    take_items(ranks, w.bolts.nodes);
-  }
+  fdem_shared::take_bolts(ranks, *w.given, w.bolts);
   if (has_gas(w)) take_items(ranks, w.fluid.gas);
 }
 

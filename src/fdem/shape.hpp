@@ -72,6 +72,7 @@ struct Shape {
   /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.
   BR_HD static Index corner_of_side(Index side, Index k) { return (side + k) % 3; }
   BR_HD static Index side_opposite(Index corner) { return (corner + 1) % 3; }
+  static Index corner_opposite(Index side) { return (side + 2) % 3; }
 
   // Contact: all sides press.
   static View<const std::uint8_t> exposed_sides(const World&) { return {}; }

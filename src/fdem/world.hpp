@@ -35,6 +35,9 @@ struct FluidState : fdem_shared::FluidStateOf<LoadedEdge, CrackSide> {
   Buffer<double> gas;
 };
 
+using BoltNode = fdem_shared::BoltNodeOf<Vec2>;
+using BoltState = fdem_shared::BoltStateOf<Vec2, LoadedEdge>;
+
 /// Joints side by side, and whether they can do without ghosts of other ranks' triangles.
 inline constexpr Index joint_pack = 8;
 enum class JointPack : std::uint8_t {

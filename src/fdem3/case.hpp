@@ -14,6 +14,7 @@
 #include "fdem3/elements/loads.hpp"
 #include "fdem3/elements/motion.hpp"
 #include "fdem3/setup/config.hpp"
+#include "fdem_shared/bolts/bolts.hpp"
 #include "fdem_shared/fluid/given.hpp"
 
 namespace breccia::fdem3 {
@@ -47,6 +48,7 @@ struct EffectiveRock {
 
 /// Of a fluid; its ports are edges.
 using FluidSource = fdem_shared::FluidSource;
+using Bolt = fdem_shared::BoltOf<Vec3>;
 using FlowCase = fdem_shared::FlowCaseOf<LoadedFace>;
 /// Two faces on each other that nothing joins, by global number.
 using CrackSide = fdem_shared::FaceCrack;
@@ -80,6 +82,7 @@ struct Case {
   std::vector<LoadedFace> loaded;             ///< by global id, ascending; without cracks
   std::vector<FluidSource> fluids;            ///< empty: no load is a fluid
   FlowCase flow;
+  std::vector<Bolt> bolts;
   std::vector<CrackSide> open_cracks;  ///< faces of discontinuities open from the start
   Buffer<ElasticTetrahedron> laws;     ///< stage  (materials; where stress in situ has a
                                        ///< slope: tetrahedra of the whole mesh)

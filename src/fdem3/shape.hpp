@@ -66,6 +66,7 @@ struct Shape {
   /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.
   BR_HD static Index corner_of_side(Index side, Index k) { return corner_of_face(side, k); }
   BR_HD static Index side_opposite(Index corner) { return corner; }
+  static Index corner_opposite(Index side) { return side; }
 
   // Contact: sides press that nothing joins (fdem3/contact/search.cpp).
   static View<const std::uint8_t> exposed_sides(const World& w) {
@@ -134,7 +135,10 @@ struct Shape {
   }
   static void derive_part(World& w, Space);
   static void take_common(World& w, Communicator& ranks);
-  static void collect_common(const World& part, World& whole) { whole.fluid = part.fluid; }
+  static void collect_common(const World& part, World& whole) {
+    whole.fluid = part.fluid;
+    whole.bolts = part.bolts;
+  }
 
   /// Present size over that at the start, and the square of a length that no corner may cover in a
   /// step.

@@ -31,6 +31,9 @@ using fdem_shared::WholeMesh;
 /// Where fluid presses on cracks: the same on all ranks.
 using FluidState = fdem_shared::FluidStateOf<LoadedFace, CrackSide>;
 
+using BoltNode = fdem_shared::BoltNodeOf<Vec3>;
+using BoltState = fdem_shared::BoltStateOf<Vec3, LoadedFace>;
+
 /// Each line tells meaning and unit, then (length; who writes it), in the words of fdem/world.hpp.
 struct World {
   explicit World(const Exec& how);
@@ -85,6 +88,7 @@ struct World {
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
   FluidState fluid;                ///< (fluid: spread_fluid(), every servo_every steps)
+  BoltState bolts;                 ///< (loads: pull_bolts(), in every step)
 
   // Which part of the whole it is, and how its tetrahedra lie in the mesh: constant between two
   // migrations.

@@ -10,6 +10,7 @@
 #include "domain/owned.hpp"
 #include "domain/set_here.hpp"
 #include "exec/error.hpp"
+#include "fdem_shared/bolts/bolts.hpp"
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -183,8 +184,7 @@ Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members
 
 template <class World>
 double probe(const World& w, const ProbeConfig& p) {
-  if constexpr (requires { read_bolt(w, p); })
-    if (const auto bolt = read_bolt(w, p)) return bolt->reduced(p.reduce);
+  if (const auto bolt = read_bolt(w, p)) return bolt->reduced(p.reduce);
   constexpr auto where = ShapeOf<World>::dimension == 2 ? in_plane : in_solid;
   for (const std::string& problem : probe_problems(p, where)) throw InputError(problem);
   Buffer<Index> members(w.exec.space);
@@ -200,8 +200,7 @@ double probe(const World& w, const ProbeConfig& p) {
 
 template <class World>
 Readings read_own(World& part, const ProbeConfig& p) {
-  if constexpr (requires { read_bolt(part, p); })
-    if (const auto bolt = read_bolt(part, p)) return *bolt;
+  if (const auto bolt = read_bolt(part, p)) return *bolt;
   using Shape = ShapeOf<World>;
   const auto& sets = part.given->sets;
   const auto set =

@@ -172,7 +172,6 @@ constexpr Instead instead[] = {
     {"dem3d", "discontinuity", "[[body.cut]] parts links"},
     {"fdem2d", "wall", "a body that a [[support]] holds as a whole is rigid"},
     {"fdem3d", "wall", "a body that a [[support]] holds as a whole is rigid"},
-    {"fdem3d", "bolt", "bars are of spheres, in a case of both methods"},
     {"fdem3d", "contact", "faces of tetrahedra lose energy by friction and `damping`"},
 };
 

@@ -25,7 +25,7 @@ bool is_of_spheres(const Config& config, const std::string& on) {
 }
 bool is_of_tetrahedra(const Config& config, const std::string& on) {
   const fdem3::Config& c = config.tetrahedra;
-  return on == all_tetrahedra || names(c.bodies, on) || names(c.supports, on);
+  return on == all_tetrahedra || names(c.bodies, on) || names(c.supports, on) || names(c.bolts, on);
 }
 
 class PairChecks {
@@ -59,26 +59,27 @@ class PairChecks {
     const auto take = [&](const char* part, const char* list, const auto& items) {
       for (const auto& item : items)
         if (!taken.insert(item.name).second)
-          add(
-              fmt::format("{}.{}.{}: the name is taken; bodies, supports and walls of both methods "
-                          "need names of their own, and \"{}\" and \"{}\" stand for all of either",
-                          part, list, item.name, all_spheres, all_tetrahedra));
+          add(fmt::format(
+              "{}.{}.{}: the name is taken; bodies, supports, walls and bolts of both methods "
+              "need names of their own, and \"{}\" and \"{}\" stand for all of either",
+              part, list, item.name, all_spheres, all_tetrahedra));
     };
     take("spheres", "body", config_.spheres.bodies);
     take("spheres", "support", config_.spheres.supports);
     take("spheres", "wall", config_.spheres.walls);
     take("tetrahedra", "body", config_.tetrahedra.bodies);
     take("tetrahedra", "support", config_.tetrahedra.supports);
+    take("tetrahedra", "bolt", config_.tetrahedra.bolts);
     std::set<std::string> bonds;
     for (const BondConfig& b : config_.bonds)
       if (!bonds.insert(b.name).second) add(fmt::format("bond.{}: the name is taken", b.name));
   }
   void check(const ProbeConfig& p) {
     if (is_of_spheres(config_, p.on) || is_of_tetrahedra(config_, p.on)) return;
-    add(
-        fmt::format("probe.{}.on = {:?}: name a body, a support or a wall, or \"{}\" or \"{}\" for "
-                    "all of them; there are: {}",
-                    p.name, p.on, all_spheres, all_tetrahedra, all_names()));
+    add(fmt::format(
+        "probe.{}.on = {:?}: name a body, a support, a wall or a bolt, or \"{}\" or \"{}\" for "
+        "all of them; there are: {}",
+        p.name, p.on, all_spheres, all_tetrahedra, all_names()));
   }
   std::string all_names() const {
     std::string text;
@@ -87,6 +88,7 @@ class PairChecks {
     };
     list(config_.spheres.bodies), list(config_.spheres.supports), list(config_.spheres.walls);
     list(config_.tetrahedra.bodies), list(config_.tetrahedra.supports);
+    list(config_.tetrahedra.bolts);
     return text.empty() ? "none" : text;
   }
   void check(const BondConfig& b) {

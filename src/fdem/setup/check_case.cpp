@@ -6,6 +6,7 @@
 #include "fdem/setup/bolts.hpp"
 #include "fdem/setup/case_rules.hpp"
 #include "fdem/setup/stages.hpp"
+#include "fdem_shared/setup/bolts.hpp"
 #include "fdem_shared/setup/fluid_rules.hpp"
 
 namespace breccia::fdem {
@@ -53,11 +54,7 @@ std::vector<std::string> case_problems(const Config& config) {
   fdem_shared::check_fluids(config, problems);
   check_gas(config, problems);
   for (const std::string& problem : bolt_problems(config)) add(problem);
-  for (const ProbeConfig& p : config.probes) {
-    const auto reads = [&](const BoltConfig& bolt) { return bolt.name == p.on; };
-    const bool bolt = std::any_of(config.bolts.begin(), config.bolts.end(), reads);
-    for (const std::string& problem : probe_problems(p, bolt ? of_bolt : in_plane)) add(problem);
-  }
+  fdem_shared::add_probe_problems(config, in_plane, 2, problems);
   for (const std::string& problem : stage_problems(config)) add(problem);
   return problems;
 }

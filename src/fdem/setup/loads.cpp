@@ -4,8 +4,8 @@
 
 #include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/fluid.hpp"
-#include "fdem/setup/bolts.hpp"
 #include "fdem/setup/regions.hpp"
+#include "fdem_shared/setup/bolts.hpp"
 #include "fdem_shared/setup/fluids.hpp"
 
 namespace breccia::fdem {
@@ -29,17 +29,14 @@ void prescribe_loads(World& w, const Config& asked) {
   for (LoadConfig& load : config.loads)
     if (load.is_gas()) load.pressure = 1.0;  // times that of its volume
   fdem_shared::prescribe_loads_and_flow(w, config);
-  if (config.bolts.empty()) return;
-  Case& given = set_up(w);
-  given.loads.push_back({LoadKind::bolt, {1.0, 1.0}, 1.0, {}, {}});  // the last one
-  given.load_amplitudes.emplace_back();
+  fdem_shared::prescribe_bolts(w, config);
 }
 
 void set_up_loads(World& w, const Config& config, const Model& model) {
   std::vector<LoadedEdge> loaded;
   std::vector<EdgeDashpots> dashpots;
   prescribe_loads(w, config);
-  set_up_bolts(w, config, model);
+  fdem_shared::set_up_bolts(w, config, model);
   const auto ports = [&](const RegionConfig& region, const std::string& where) {
     const std::vector<Index> vertices = vertices_in(model, region, where);
     return std::vector<fdem_shared::Port>(vertices.begin(), vertices.end());

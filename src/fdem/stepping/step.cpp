@@ -51,7 +51,7 @@ double shortened_time_step(World& w, const Buffer<Index>& triangles) {
 
 void StepwiseRun::load_forces(World& w) const {
   if (w.given->flow.on) flow_on(w);
-  if (!w.given->bolts.empty()) pull_bolts(w);
+  if (!w.given->bolts.empty()) fdem_shared::pull_bolts(w);
   fdem_shared::StepwiseRun<World>::load_forces(w);
 }
 

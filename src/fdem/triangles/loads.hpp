@@ -23,6 +23,10 @@ struct LoadedEdge {
   static LoadedEdge of(Index number, std::int16_t load, double share) {
     return {number / 3, static_cast<std::int16_t>(number % 3), load, share, 0.0, 0.0};
   }
+  /// An edge that a bolt pulls at. @param pull  of its whole, shared out evenly  [N/m]
+  static LoadedEdge pulled(Index number, std::int16_t load, double share, const Vec2& pull) {
+    return {number / 3, static_cast<std::int16_t>(number % 3), load, share, pull.x, pull.y};
+  }
   Index number() const { return 3 * triangle + edge; }
   Index& element() { return triangle; }
   Index element() const { return triangle; }

@@ -17,14 +17,21 @@ struct LoadedFace {
   std::int16_t face;
   std::int16_t load;  ///< index into the laws
   double share;       ///< of the load's faces, by area at the start; of a fluid: filled part  [-]
-  double impedance_p, impedance_s;  ///< rho c_p and rho c_s of its tetrahedron  [Pa s/m]
+  /// rho c_p and rho c_s of its tetrahedron  [Pa s/m]; of a bolt: x and y of what it pulls with [N]
+  double impedance_p, impedance_s;
+  double pull_z = 0.0;  ///<  [N]
 
   static LoadedFace of(Index number, std::int16_t load, double share) {
     return {number / 4, static_cast<std::int16_t>(number % 4), load, share, 0.0, 0.0};
   }
+  /// A face that a bolt pulls at. @param pull  of its whole, shared out evenly  [N]
+  static LoadedFace pulled(Index number, std::int16_t load, double share, const Vec3& pull) {
+    return {number / 4, static_cast<std::int16_t>(number % 4), load, share, pull.x, pull.y, pull.z};
+  }
   Index number() const { return 4 * tetrahedron + face; }
   Index& element() { return tetrahedron; }
   Index element() const { return tetrahedron; }
+  BR_HD Vec3 pull() const { return {impedance_p, impedance_s, pull_z}; }
 };
 
 /// Adds the loads of one tetrahedron's faces, a third to each corner.
@@ -66,6 +73,7 @@ struct LoadForces {
     const Vec3 whole = law.kind == LoadKind::pressure   ? -law.pressure * outward
                        : law.kind == LoadKind::fluid    ? (-law.pressure * face.share) * outward
                        : law.kind == LoadKind::traction ? norm(outward) * law.traction
+                       : law.kind == LoadKind::bolt     ? face.share * face.pull()
                                                         : face.share * law.force;
     const Vec3 third{law.factor.x / 3.0 * whole.x, law.factor.y / 3.0 * whole.y,
                      law.factor.z / 3.0 * whole.z};

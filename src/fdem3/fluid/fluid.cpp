@@ -86,10 +86,11 @@ void restore_fluid(World& part) {
 }
 
 void list_loaded(World& w) {
-  if (w.given->loaded.empty() && w.given->fluids.empty()) return;
+  if (w.given->loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
   std::vector<LoadedFace> all = w.given->loaded;
   all.insert(all.end(), w.fluid.wet.begin(), w.fluid.wet.end());
   all.insert(all.end(), w.fluid.border.begin(), w.fluid.border.end());
+  all.insert(all.end(), w.bolts.pull.begin(), w.bolts.pull.end());
   fdem_shared::list_here(w, all, w.loaded_faces, w.load_starts);
 }
 

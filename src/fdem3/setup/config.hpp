@@ -66,6 +66,8 @@ struct LoadConfig : fdem_shared::FluidLoadConfigOf<RegionConfig, Vec3> {
   }
 };
 
+using BoltConfig = fdem_shared::BoltConfigOf<Vec3>;
+
 using SupportChange = fdem_shared::SupportChangeOf<Vec3>;
 using LoadChange = fdem_shared::LoadChangeOf<Vec3>;
 using StageConfig = fdem_shared::MeshStageConfig<Vec3>;
@@ -140,6 +142,7 @@ struct Config : CaseConfig {
   InSituConfig in_situ;
   std::vector<SupportConfig> supports;
   std::vector<LoadConfig> loads;
+  std::vector<BoltConfig> bolts;
   std::vector<StageConfig> stages;
   double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
   std::vector<std::string> removed;  ///< no key: bodies that are gone by now
@@ -164,6 +167,7 @@ struct Config : CaseConfig {
     key.table("in_situ", in_situ, "stress at the start");
     key.list("support", supports, "prescribed motion");
     key.list("load", loads, "forces on faces");
+    key.list("bolt", bolts, "rock bolts: bars that a bond ties to tetrahedra");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
     key.table("emission", emission, "which breaks are one event of acoustic emission");

@@ -4,6 +4,7 @@
 
 #include "fdem3/fluid/fluid.hpp"
 #include "fdem3/setup/regions.hpp"
+#include "fdem_shared/setup/bolts.hpp"
 #include "fdem_shared/setup/fluids.hpp"
 
 namespace breccia::fdem3 {
@@ -22,12 +23,14 @@ Vec3 area_of(const Model& model, Index face) {
 
 void prescribe_loads(World& w, const Config& config) {
   fdem_shared::prescribe_loads_and_flow(w, config);
+  fdem_shared::prescribe_bolts(w, config);
 }
 
 void set_up_loads(World& w, const Config& config, const Model& model) {
   std::vector<LoadedFace> loaded;
   std::vector<FaceDashpots> dashpots;
   prescribe_loads(w, config);
+  fdem_shared::set_up_bolts(w, config, model);
   const auto ports = [&](const RegionConfig& region, const std::string& where) {
     return ports_in(model, region, where);
   };
@@ -65,7 +68,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
                                   loaded.end());
     loaded.resize(first);
   }
-  if (loaded.empty() && w.given->fluids.empty()) return;
+  if (loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedFace& a, const LoadedFace& b) {
     return a.tetrahedron < b.tetrahedron;
   });

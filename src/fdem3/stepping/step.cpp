@@ -57,6 +57,7 @@ double shortened_time_step(World& w, const Buffer<Index>& tetrahedra) {
 
 void StepwiseRun::load_forces(World& w) const {
   if (w.given->flow.on) flow_on(w);
+  if (!w.given->bolts.empty()) fdem_shared::pull_bolts(w);
   fdem_shared::StepwiseRun<World>::load_forces(w);
 }
 
@@ -71,8 +72,9 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  if (!w.given->flow.on && !fdem_shared::turns_anything(w)) return advance_by_steps(w, stop);
-  step(w);  // places of cracks and axes are of the host in every step, on a device, too
+  if (!w.given->flow.on && w.given->bolts.empty() && !fdem_shared::turns_anything(w))
+    return advance_by_steps(w, stop);
+  step(w);  // places of cracks, bolts and axes are of the host in every step, on a device, too
   return {1, w.last_dt, w.last_dt};
 }
 

@@ -12,7 +12,7 @@ namespace breccia::fdem3 {
 using fdem_shared::take_forces;
 using fdem_shared::take_step;
 
-/// Fluid that flows, besides what both shapes share.
+/// Fluid that flows and bolts that pull, besides what both shapes share.
 struct StepwiseRun : fdem_shared::StepwiseRun<World> {
   void load_forces(World& w) const;
 };

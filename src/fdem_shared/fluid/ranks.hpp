@@ -1,5 +1,5 @@
 #pragma once
-// State of a fluid that ranks take over from rank 0.
+// State of a fluid, and of bolts, that ranks take over from rank 0.
 
 #include "domain/together.hpp"
 #include "exec/buffer.hpp"
@@ -25,6 +25,13 @@ void take_fluid(Communicator& ranks, const Case& given, State& fluid) {
   take_from_first(ranks, fluid.pressure);
   BR_ASSERT(fluid.volume.size() > 0);
   take_items(ranks, fluid.volume);
+}
+
+template <class Case, class State>
+void take_bolts(Communicator& ranks, const Case& given, State& bolts) {
+  if (given.bolts.empty()) return;
+  take_from_first(ranks, bolts.time);
+  take_items(ranks, bolts.nodes);
 }
 
 }  // namespace breccia::fdem_shared

@@ -7,8 +7,10 @@
 #include "exec/error.hpp"
 #include "fdem/setup/bedding.hpp"
 #include "fdem/setup/case_rules.hpp"
+#include "fdem3/setup/bolts.hpp"
 #include "fdem3/setup/materials.hpp"
 #include "fdem3/setup/stages.hpp"
+#include "fdem_shared/setup/bolts.hpp"
 #include "fdem_shared/setup/fluid_rules.hpp"
 #include "prepare/checks/check_bodies.hpp"
 
@@ -35,8 +37,8 @@ class TetCaseChecks {
       check_kind("load." + l.name, l.kind, l);
     }
     fdem_shared::check_fluids(config, problems_);
-    for (const ProbeConfig& p : config.probes)
-      for (const std::string& problem : probe_problems(p, in_solid)) add(problem);
+    fdem_shared::add_probe_problems(config, in_solid, 3, problems_);
+    for (const std::string& problem : fdem3::bolt_problems(config)) add(problem);
     for (const std::string& problem : fdem3::stage_problems(config)) add(problem);
     for (const fdem3::StageConfig& stage : config.stages) check(stage);
   }

@@ -12,7 +12,7 @@
 #include "dem/setup/walls.hpp"
 #include "dem/wall_mesh.hpp"
 #include "exec/error.hpp"
-#include "fdem/setup/bolts.hpp"
+#include "fdem_shared/setup/bolts.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/outlines.hpp"
@@ -192,9 +192,11 @@ double farthest_above(const dem::Wall& plane, const Bounds& b) {
 }
 
 /// The problem of a point that no body can hold; empty: one may.
-std::string problem_of_point(const std::string& key, const Vec2& point,
+template <class Vector>
+std::string problem_of_point(const std::string& key, const Vector& point,
                              const std::vector<Outline>& outlines) {
-  const Bounds here{{point.x, point.y, 0.0}, {point.x, point.y, 0.0}};
+  const Vec3 x = fdem_shared::to_space(point);
+  const Bounds here{{x.x, x.y, x.z}, {x.x, x.y, x.z}};
   const Outline* nearest = nullptr;
   double least = no_limit;
   for (const Outline& outline : outlines) {
@@ -207,8 +209,9 @@ std::string problem_of_point(const std::string& key, const Vec2& point,
     nearest = &outline;
   }
   if (nearest == nullptr) return "";
-  return fmt::format("{}: ({}, {}) lies in no body; {} is nearest, {} away", key, place(point.x),
-                     place(point.y), nearest->name, length_text(least));
+  const std::string z = std::is_same_v<Vector, Vec2> ? "" : ", " + place(x.z);
+  return fmt::format("{}: ({}, {}{}) lies in no body; {} is nearest, {} away", key, place(x.x),
+                     place(x.y), z, nearest->name, length_text(least));
 }
 
 /// The problem of a set of joints that meets no body; empty: it may meet one, or its file is bad.
@@ -287,7 +290,7 @@ std::string problem_of_dug(const Config& config, const Load& load,
   return problem_of("load." + load.name, bounds_of(load.region), "", taken);
 }
 
-/// Supports and loads of meshes, bolts and sets of joints of plane ones.
+/// Supports, loads, bolts and sets of joints of meshes.
 template <class Config>
 void check_faces_and_corners(const Config& config, const std::string* folder) {
   const std::vector<Outline> outlines = outlines_of(config, folder);
@@ -299,10 +302,9 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
         problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
     if (problems.back().empty()) problems.back() = problem_of_dug(config, load, outlines);
   }
-  if constexpr (requires { config.bolts; })
-    for (const auto& bolt : config.bolts)
-      for (const Vec2& point : fdem::corners_of(bolt))
-        problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
+  for (const auto& bolt : config.bolts)
+    for (const auto& point : fdem_shared::corners_of(bolt))
+      problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
   if constexpr (requires { config.joint_sets; })
     for (const auto& set : config.joint_sets)
       problems.push_back(problem_of_set(set, folder, outlines));

@@ -316,7 +316,6 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   f.item_name = "triangles";
   f.bond_name = "joints";
   fdem::Config specimen = without_bodies(config);
-  specimen.bolts.clear();
   double top = 0.0, finest = 0.0;
   bool free_mesh = false, by_gmsh = false;
   constexpr double begun_mesh = 0.3, meshing_of_one = 60e-6;  // measured  [s]

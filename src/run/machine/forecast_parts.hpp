@@ -60,6 +60,7 @@ Config without_bodies(Config config) {
   config.joint_sets.clear();
   config.supports.clear();
   config.loads.clear();
+  config.bolts.clear();
   config.probes.clear();
   config.checks.clear();
   return config;

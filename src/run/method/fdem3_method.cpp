@@ -7,6 +7,7 @@
 #include "fdem3/ranks.hpp"
 #include "fdem3/servos.hpp"
 #include "fdem3/setup/stages.hpp"
+#include "run/method/bolts.hpp"
 #include "run/method/emission_table.hpp"
 #include "run/method/mesh_sim.hpp"
 
@@ -36,6 +37,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
   void add_findings(const World& w, std::vector<Fact>& facts) const {
     add_cracks(w, facts);
     add_fluids(w, facts, [&](std::size_t k) { return given_pressure(w, k); });
+    add_bolt_findings(w, facts);
     add_emission(facts, fdem3::emission(w, places));
     std::vector<double> mass;
     for (const fdem3::Piece& piece : fdem3::fragments(w).pieces) mass.push_back(piece.mass);
@@ -66,7 +68,9 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
                              p.centre.y, p.centre.z, p.velocity.x, p.velocity.y, p.velocity.z});
       number += 1.0;
     }
-    return {cracks, pieces, table_of(fdem3::emission(w, places))};
+    std::vector<Table> tables{cracks, pieces, table_of(fdem3::emission(w, places))};
+    add_bolt_table(w, tables);
+    return tables;
   }
 
   static std::vector<std::string> constants() {
@@ -80,6 +84,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
     each_stored_array(w, visit, [&](const Visit& of) {
       of.fields("joint_force", Loose<fdem3::JointForce>{"force", w.joints.force});
     });
+    each_stored_bolt(w, visit);
     each_stored_fluid(w, visit);
   }
 };

@@ -10,6 +10,7 @@
 #include "fdem/setup/removal.hpp"
 #include "fdem/setup/stages.hpp"
 #include "fdem/stepping/step.hpp"
+#include "run/method/bolts.hpp"
 #include "run/method/emission_table.hpp"
 #include "run/method/mesh_sim.hpp"
 
@@ -40,7 +41,7 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
     add_fluids(w, facts, [&](std::size_t k) {
       return w.given->fluids[k].holes.empty() ? given_pressure(w, k) : w.fluid.gas.data()[k];
     });
-    add_bolts(w, facts);
+    add_bolt_findings(w, facts);
     add_emission(facts, events(w));
     add_fragments(fdem::fragments(w).mass, facts);
   }
@@ -70,40 +71,8 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
                              p.area, p.centre.x, p.centre.y, p.velocity.x, p.velocity.y});
     }
     std::vector<Table> tables{cracks, pieces, table_of(events(w))};
-    if (!w.given->bolts.empty()) tables.push_back(bolt_table(w));
+    add_bolt_table(w, tables);
     return tables;
-  }
-  static Table bolt_table(const World& w) {
-    Table bolts{"bolts",
-                {"bolt", "x", "y", "force", "across", "slip"},
-                {"-", "m", "m", "N/m", "N/m", "m"},
-                {}};
-    for (const fdem::BoltRow& row : fdem::bolt_rows(w))
-      bolts.rows.push_back({static_cast<double>(row.bolt), row.place.x, row.place.y, row.force,
-                            row.across, row.slip});
-    return bolts;
-  }
-  static void add_bolts(const World& w, std::vector<Fact>& facts) {
-    if (w.given->bolts.empty()) return;
-    const std::vector<fdem::BoltEnergy> energies = fdem::bolt_energies(w);
-    const std::vector<fdem::BoltRow> rows = fdem::bolt_rows(w);
-    for (std::size_t b = 0; b < energies.size(); ++b) {
-      double force = 0.0, across = 0.0, slip = 0.0;
-      for (const fdem::BoltRow& row : rows)
-        if (row.bolt == b) {
-          if (std::abs(row.force) > std::abs(force)) force = row.force;
-          if (std::abs(row.across) > std::abs(across)) across = row.across;
-          slip = std::max(slip, std::abs(row.slip));
-        }
-      const std::string path = "bolt." + w.given->bolts[b].name + ".";
-      facts.push_back({path + "force", force});
-      facts.push_back({path + "across", across});
-      facts.push_back({path + "slip", slip});
-      facts.push_back({path + "elastic", energies[b].elastic});
-      facts.push_back({path + "yielded", energies[b].yielded});
-      facts.push_back({path + "rubbed", energies[b].rubbed});
-      facts.push_back({path + "crushed", energies[b].crushed});
-    }
   }
   std::vector<EmissionEvent> events(const World& w) const {
     std::vector<fdem::JointLine> at_start;
@@ -126,10 +95,7 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
                   Loose<fdem::JointForceOf<Number>>{"force", w.joints.force.as<Number>()});
       });
     });
-    if (!w.given->bolts.empty()) {
-      visit("bolts.time", w.bolts.time);
-      visit.fields("bolts", Loose<fdem::BoltNode>{"node", w.bolts.nodes});
-    }
+    each_stored_bolt(w, visit);
     each_stored_fluid(w, visit);
     if (fdem::has_gas(w)) visit.fields("gas", Loose<double>{"pressure", w.fluid.gas});
   }

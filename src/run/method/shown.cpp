@@ -203,6 +203,20 @@ void add_fluids(const Given& config, Config& one, const Part& part) {
     }
 }
 
+/// Its bolts. @param put  put(bolt): where it is
+template <class Given, class Config, class Put>
+void add_bolts(const Given& config, Config& one, const Put& put) {
+  if (config.bodies.empty()) return;
+  for (const auto& bolt : config.bolts) {
+    one.bolts.emplace_back().name = bolt.name;
+    put(one.bolts.back());
+  }
+}
+/// In the first tetrahedron.
+void put_in_space(fdem3::BoltConfig& bolt) {
+  bolt.points = {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
+}
+
 /// One edge of a tetrahedron, and the one opposite.
 void part_outlet(fdem3::LoadConfig& load, fdem3::RegionConfig& outlet) {
   load.region.max = {0.5, 0.5, no_limit};
@@ -223,6 +237,7 @@ void check_shown(const coupled::Config& config) {
   one.spheres.materials.emplace_back();
   one.tetrahedra.materials.emplace_back();
   add_fluids(config.tetrahedra, one.tetrahedra, part_outlet);
+  add_bolts(config.tetrahedra, one.tetrahedra, put_in_space);
   coupled::Model model{specimen_of(config.spheres), specimen_of(config.tetrahedra)};
   for (Vec3& place : model.spheres.position) place.y = 100.0;  // clear of the tetrahedra
   refuse_what_is_not_shown(config, *make_method(one, model, {}));
@@ -247,11 +262,7 @@ void check_shown(const fdem::Config& config) {
     model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
     model.groups.push_back(body.name);
   }
-  for (const fdem::BoltConfig& bolt : config.bolts)
-    if (!config.bodies.empty()) {
-      one.bolts.emplace_back().name = bolt.name;
-      one.bolts.back().points = {{0.1, 0.1}, {0.3, 0.3}};
-    }
+  add_bolts(config, one, [](auto& bolt) { bolt.points = {{0.1, 0.1}, {0.3, 0.3}}; });
   const std::size_t count = model.groups.size();
   model.material.resize(count);
   model.velocity.resize(count);
@@ -263,6 +274,7 @@ void check_shown(const fdem3::Config& config) {
   auto one = case_of_specimen<fdem3::Config>(config);
   one.materials.emplace_back();
   add_fluids(config, one, part_outlet);
+  add_bolts(config, one, put_in_space);
   refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}));
 }
 

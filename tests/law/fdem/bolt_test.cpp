@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 
-#include "fdem/bolts/chain.hpp"
+#include "fdem_shared/bolts/chain.hpp"
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 namespace bolt_test {
+
+using BoltNode = BoltNodeOf<Vec2>;
 
 constexpr double half = 0.5;              ///< length on each side of the crack  [m]
 const BoltLaw steel{2e7, 5e4, 1e9, 5e5};  // per metre of thickness
@@ -31,11 +33,11 @@ struct Crossed {
   /// @returns the force where it crosses the crack
   double open_to(double opening) {
     length[pieces] = 1e-3 + opening;
-    BoltChain chain(law, start, end, nodes.data(), length);
+    BoltChain<BoltNode> chain(law, start, end, nodes.data(), length);
     chain.settle();
     return chain.force(pieces);
   }
-  double elastic() { return BoltChain(law, start, end, nodes.data(), length).elastic(); }
+  double elastic() { return BoltChain<BoltNode>(law, start, end, nodes.data(), length).elastic(); }
   double taken() const {
     double sum = 0.0;
     for (const BoltNode& n : nodes) sum += n.yielded + n.rubbed;
@@ -133,19 +135,19 @@ TEST(Bolt, is_as_stiff_across_as_a_beam_in_grout) {
 TEST(Bolt, lies_out_of_line_by_slip_alone) {
   const Vec2 way{0.3, 0.4};
   const auto mapped = [](const Vec2& v) { return Vec2{0.6 * v.x - 0.9 * v.y, 0.7 * v.x + v.y}; };
-  EXPECT_NEAR(Offset::of(mapped(way), mapped(way), mapped(way)).way, 0.0, 1e-16);
+  EXPECT_NEAR(PlaneOffset::of(mapped(way), mapped(way), mapped(way)).way, 0.0, 1e-16);
   const Vec2 slip = 1e-3 * Vec2{-0.8, 0.6};
-  EXPECT_NEAR(Offset::of(way + slip, way, way).way, 1e-3, 1e-15);
+  EXPECT_NEAR(PlaneOffset::of(way + slip, way, way).way, 1e-3, 1e-15);
   // Its slope by the way between its ends, and by what carries its ends, is what its forces say.
   const Vec2 one{0.29, 0.42}, other{0.33, 0.37};
   const auto slope = [&](const auto& at) { return (at(1e-6) - at(-1e-6)) / 2e-6; };
-  const Offset at = Offset::of(way, one, other);
+  const PlaneOffset at = PlaneOffset::of(way, one, other);
   const Vec2 aside{0.2, 0.5};
-  EXPECT_NEAR(slope([&](double e) { return Offset::of(way + e * aside, one, other).way; }),
+  EXPECT_NEAR(slope([&](double e) { return PlaneOffset::of(way + e * aside, one, other).way; }),
               dot(at.across, aside), 1e-9);
-  EXPECT_NEAR(slope([&](double e) { return Offset::of(way, one + e * aside, other).way; }),
+  EXPECT_NEAR(slope([&](double e) { return PlaneOffset::of(way, one + e * aside, other).way; }),
               -at.lever * dot(at.across, aside), 1e-9);
 }
 
 }  // namespace bolt_test
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared

@@ -463,9 +463,9 @@ TEST(CheckCommand, tells_which_methods_have_a_key) {
       "and supports with a servo press, `force` of a [[support]] acts on elements, `absorb` "
       "takes waves up");
   EXPECT_EQ(
-      told("fdem3d", "[[bolt]]\nname = \"a\"\n"),
-      "bolt is not a key of fdem3d; fdem2d has it\n    bars are of spheres, in a case of both "
-      "methods");
+      told("dem3d", "[[bolt]]\nname = \"a\"\n"),
+      "bolt is not a key of dem3d; fdem2d and fdem3d have it\n    bars with bond are bodies of "
+      "shape \"rebar\"");
   EXPECT_EQ(told("dem3d", "body = [{ name = \"a\", weibull = { modulus = 4.0 } }]\n"),
             "body.a.weibull is not a key of dem3d; fdem2d and fdem3d have it");
   EXPECT_EQ(told("fdem2d", "links.range = 1.4\n"), "links is not a key of fdem2d; dem3d has it");
