@@ -89,6 +89,15 @@ struct FirstLaunch : LoadedBy<Kernel> {
 /// host_request; or there with the move in the clock's time already.
 enum class Phase { in_move, after_move, after_search };
 
+/// The request in spite of which a kernel goes on, as its own items make it; 0: none.
+template <class Kernel>
+inline constexpr std::int32_t goes_on_at = 0;
+template <class Kernel>
+requires requires {
+  Kernel::goes_on_at_request;
+}
+inline constexpr std::int32_t goes_on_at<Kernel> = Kernel::goes_on_at_request;
+
 /// A kernel of any launch but the first. A copy of it gets the time, unless it hands its own
 /// address on: the parameters of one with slow() or update_at(now, i, loaded) stay in place.
 template <class Kernel, Phase phase>
@@ -106,7 +115,8 @@ struct ClockedLaunch : LoadedBy<Kernel> {
   BR_HD auto operator()(Index i, Read&... loaded) const {
     (kernel.load_late(i, loaded), ...);  // before the clock is known
     const StepClock& c = *clock;
-    if (c.halted != 0 || (phase != Phase::in_move && c.host_request != 0)) {
+    if (c.halted != 0 ||
+        (phase != Phase::in_move && c.host_request != 0 && c.host_request != goes_on_at<Kernel>)) {
       if constexpr (gives_number<Kernel, Read...>)
         return largest_least;
       else

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/pair_list.hpp"
+#include "core/rare_array.hpp"
 #include "domain/communicator.hpp"
 
 namespace breccia {
@@ -76,6 +77,11 @@ std::size_t item_bytes(const PlanesOf<Number>&) {
 }
 
 template <class T>
+std::size_t item_bytes(const RareArray<T>&) {
+  return sizeof(T);
+}
+
+template <class T>
 void put(Message& message, const Buffer<T>& array, const std::vector<Index>& items) {
   const std::size_t before = message.size();
   message.resize(before + items.size() * sizeof(T));
@@ -95,6 +101,18 @@ void put(Message& message, const PlanesOf<Number>& planes, const std::vector<Ind
 }
 
 template <class T>
+void put(Message& message, const RareArray<T>& array, const std::vector<Index>& items) {
+  const std::size_t before = message.size();
+  message.resize(before + items.size() * sizeof(T));
+  std::byte* to = message.data() + before;
+  for (const Index i : items) {
+    const T item = array.item(i);
+    std::memcpy(to, &item, sizeof(T));
+    to += sizeof(T);
+  }
+}
+
+template <class T>
 const std::byte* take(const std::byte* from, Buffer<T>& array, Index first, Index count) {
   const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(T);
   if (bytes > 0) std::memcpy(array.data() + first, from, bytes);
@@ -104,6 +122,17 @@ template <class Number>
 const std::byte* take(const std::byte* from, PlanesOf<Number>& planes, Index first, Index count) {
   for (int plane = 0; plane < 3; ++plane)
     from = take(from, planes.items(), plane * planes.size() + first, count);
+  return from;
+}
+
+template <class T>
+const std::byte* take(const std::byte* from, RareArray<T>& array, Index first, Index count) {
+  for (Index i = 0; i < count; ++i) {
+    T item;
+    std::memcpy(&item, from, sizeof(T));
+    array.set(first + i, item);
+    from += sizeof(T);
+  }
   return from;
 }
 
@@ -171,6 +200,10 @@ struct Merging {
   template <class T>
   void apply(Buffer<T>& array) const {
     apply(array.data());
+  }
+  template <class T>
+  void apply(RareArray<T>& records) const {
+    apply(records.numbers());
   }
   template <class Number>
   void apply(PlanesOf<Number>& planes) const {

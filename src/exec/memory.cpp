@@ -1,5 +1,7 @@
 #include "exec/memory.hpp"
 
+#include <sys/mman.h>
+
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -63,6 +65,17 @@ void release(Space space, void* memory) noexcept {
   std::memcpy(&padded, block, sizeof padded);
   alive_bytes -= padded;
   std::free(block);
+}
+
+void* reserve_memory(std::size_t bytes) {
+  void* const memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  return memory;
+}
+
+void release_reserved(void* memory, std::size_t bytes) noexcept {
+  if (memory != nullptr) ::munmap(memory, bytes);
 }
 
 void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,

@@ -10,6 +10,11 @@ namespace breccia {
 /// `bytes` of memory in `space`, aligned to 64 bytes. @throws std::bad_alloc
 void* allocate(Space space, std::size_t bytes);
 void release(Space space, void* memory) noexcept;
+/// Address space for `bytes` of the host, aligned to pages: memory is taken page by page, as each
+/// is first written to; peak_array_bytes() does not count it. Zero at first. @throws std::bad_alloc
+void* reserve_memory(std::size_t bytes);
+/// @param bytes  as they were reserved
+void release_reserved(void* memory, std::size_t bytes) noexcept;
 /// Copies between any two spaces; complete on return, or within a device before the next kernel.
 void copy_bytes(void* to, Space to_space, const void* from, Space from_space, std::size_t bytes);
 /// Reads what kernels are writing, without waiting for them: beside all other work of a device.

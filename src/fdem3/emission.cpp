@@ -36,7 +36,8 @@ std::vector<EmissionEvent> emission(const World& w, const std::vector<JointPlace
   for (Index i = 0; i < joints->size(); ++i) {
     if (joints->stage.data()[i] != JointStage::broken) continue;
     double opening = 0.0, slip = 0.0;  // means over the joint
-    for (const auto& point : joints->points.data()[i].point) {
+    const JointPoints points = points_of(*joints, i);
+    for (const auto& point : points.point) {
       opening += point.opening / 3.0;
       slip += point.slip / 3.0;
     }
@@ -50,7 +51,7 @@ std::vector<EmissionEvent> emission(const World& w, const std::vector<JointPlace
     }
     const Vec3 along = slip_direction(place, opening_of(a, b));
     breaks.push_back(
-        {joints->broke_at.data()[i], place.middle,
+        {broke_at(*joints, i), place.middle,
          fdem_shared::moment_of(fdem_shared::mean_of_sides(law_at(joints->face_a.data()[i]),
                                                            law_at(joints->face_b.data()[i])),
                                 place.normal, along, joints->shape.data()[i].area(), opening, slip),

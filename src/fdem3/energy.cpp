@@ -30,7 +30,7 @@ struct StoredByJoints {
   View<const FaceShape> shape;
   View<const double> length, strength;
   View<const Vec3> preset;
-  View<const JointPoints> points;
+  FailedJoints failure;
 
   BR_HD fdem::StoredEnergy operator()(Index i) const {
     const JointEnds e = JointEnds::of(face_a[i], face_b[i], turn[i]);
@@ -41,7 +41,7 @@ struct StoredByJoints {
     }
     const Vec3 offset = preset.size > 0 ? preset[i] : Vec3{};
     return stored_in(bonds[law[i]], strength[i], length[i], shape[i].area(), offset,
-                     opening_of(a, b), points[i]);
+                     opening_of(a, b), failure.part<&JointFailure::points>(i));
   }
 };
 
@@ -62,7 +62,7 @@ StoredByJoints stored_by_joints(const World& w) {
           j.length.view(),
           j.strength.view(),
           j.preset.view(),
-          j.points.view()};
+          j.failure.view()};
 }
 
 Energies held(const World& w) {

@@ -59,7 +59,7 @@ std::vector<Crack> cracks(const World& w) {
     }
     const JointOpening o = opening_of(a, b);
     return Crack{
-        i,        j.broke_at.data()[i],     (1.0 / 3.0) * (o.middle[0] + o.middle[1] + o.middle[2]),
+        i,        broke_at(j, i),           (1.0 / 3.0) * (o.middle[0] + o.middle[1] + o.middle[2]),
         o.normal, j.shape.data()[i].area(), mode_of(j, i),
         work};
   });

@@ -127,6 +127,7 @@ struct World {
   Buffer<fdem_shared::RowsOfCorners<fdem_shared::RowSums, 4>> rows;  ///< where corners move as one
                                                                      ///< (tetrahedra; dt)
   double least_step = 0.0;   ///< stable one of all, when last evaluated  [s]  (dt)
+  bool joints_wait = false;  ///< some found no room for their records (advance)
   bool margin_used = false;  ///< some own tetrahedron has used its margin up (move)
 
   // On a device: see fdem/world.hpp.

@@ -22,11 +22,9 @@
 #include "fdem_shared/over_time.hpp"
 #include "fdem_shared/step.hpp"
 #include "fdem_shared/stepping.hpp"
+#include "fdem_shared/wanted.hpp"
 
 namespace breccia::fdem_shared {
-
-/// Values of `host_request`: what the host does in the middle of a step.
-enum Wanted : std::int32_t { request_search = 1, request_insertion = 2 };
 
 /// Velocities of supports at the middle of the step to come.
 template <class Shape>
@@ -326,10 +324,15 @@ Advanced advance_mesh(World& w, const StopAt& stop) {
       [&](const StepClocks& clocks) { take_step(AfterMove(clocks), w); },
       [&](const StepClocks& clocks) { take_forces(AfterSearch(clocks), w); },
       [&](std::int32_t host_request) {
-        const bool insertion = host_request == request_insertion;
-        insertion ? evaluate_forces(w) : find_couples(w);
-        if (insertion) scale_motions_now(w);
-        return insertion;
+        if (host_request == request_search) {
+          find_couples(w);
+          return false;
+        }
+        if constexpr (requires { Launches::go_on(w); })
+          if (host_request == request_room) Launches::go_on(w);
+        evaluate_forces(w);
+        scale_motions_now(w);
+        return true;
       });
   if (scales_next(w)) copy_to(w.motions, w.last_motions);
   return taken;

@@ -38,7 +38,7 @@ Law mean_of_sides(Law a, const Law& b) {
 /// Energy that a joint spent, without what contact of its sides began with.
 template <class Joints>
 double spent_by(const Joints& joints, Index i) {
-  const auto &work = joints.work.data()[i], &before = joints.inherited_work.data()[i];
+  const auto &work = joints.work.data()[i], &before = inherited_work(joints, i);
   return work.open + work.slide - before.open - before.slide;
 }
 

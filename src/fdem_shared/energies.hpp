@@ -54,16 +54,18 @@ struct GravityPotential {
 };
 
 /// @tparam Stored  a method's: stored(i), what joint i would give back if it were unloaded now
-template <class Stage, class Work, class Stored>
+template <class Stage, class Work, class Inherited, class Stored>
 struct JointShares {
   View<const Stage> stage;
-  View<const Work> work, inherited_work;
+  View<const Work> work;
+  Inherited inherited_work;
   Stored stored;
 
   BR_HD void add_to(Energies& s, Index i) const {
     if (stage[i] == Stage::dormant) return;
-    const Work &spent = work[i], &inherited = inherited_work[i];
+    const Work& spent = work[i];
     if (stage[i] == Stage::cut) {  // after that it took work out of the model
+      const Work inherited = inherited_work[i];
       s.fracture.add(inherited.open);
       s.sliding.add(inherited.slide);
       s.work.add(inherited.open - spent.open);
@@ -74,6 +76,7 @@ struct JointShares {
     s.fracture.add(spent.open);
     s.sliding.add(spent.slide);
     if (stage[i] == Stage::broken) {
+      const Work inherited = inherited_work[i];
       s.fracture.add(-inherited.open);
       s.sliding.add(-inherited.slide);
       return;
@@ -116,25 +119,25 @@ Energies held_by_part(const World& w) {
   const auto own = [&w](const auto& kernel, const auto& element_of) {
     return of_owned(w.domain, Energies{}, kernel, element_of);
   };
-  all.add_parts(
-      part(t.size(),
-           own(
-               ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
-                   of_elements, t.external.view(), t.viscous_work.view(), t.damping_work.view(),
-                   t.load_work.view()},
-               ItemItself{}),
-           part(j.size(),
-                own(
-                    JointShares<Stage, Work, std::remove_cv_t<decltype(of_joints)>>{
-                        j.stage.view(), j.work.view(), j.inherited_work.view(), of_joints},
-                    ListedElement<Shape::corners>{Shape::side_a(j).view()}),
-                part(w.couples.size(),
-                     own(CoupleShares<std::remove_cvref_t<decltype(state[0])>>{state},
-                         ListedElement<>{w.couples.pairs.a.view()}),
-                     part(falling,
-                          own(GravityPotential<Shape>{gravity, t.nodes.view(), t.mass.view()},
-                              ItemItself{}),
-                          Parts<>{})))));
+  all.add_parts(part(
+      t.size(),
+      own(
+          ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
+              of_elements, t.external.view(), t.viscous_work.view(), t.damping_work.view(),
+              t.load_work.view()},
+          ItemItself{}),
+      part(j.size(),
+           own(JointShares<Stage, Work, decltype(works_inherited(j)),
+                           std::remove_cv_t<decltype(of_joints)>>{j.stage.view(), j.work.view(),
+                                                                  works_inherited(j), of_joints},
+               ListedElement<Shape::corners>{Shape::side_a(j).view()}),
+           part(w.couples.size(),
+                own(CoupleShares<std::remove_cvref_t<decltype(state[0])>>{state},
+                    ListedElement<>{w.couples.pairs.a.view()}),
+                part(falling,
+                     own(GravityPotential<Shape>{gravity, t.nodes.view(), t.mass.view()},
+                         ItemItself{}),
+                     Parts<>{})))));
   return all.sum();
 }
 

@@ -179,7 +179,8 @@ std::vector<double> damage(const World& w) {
   for (Index i = 0; i < j.size(); ++i) {
     if (!is_damaged(j.stage.data()[i])) continue;
     double d = j.stage.data()[i] == Stage::broken ? 1.0 : 0.0;
-    for (const auto& point : j.points.data()[i].point) d = std::max(d, point.damage);
+    const auto& points = points_of(j, i);
+    for (const auto& point : points.point) d = std::max(d, point.damage);
     for (const Index side : {Shape::side_a(j).data()[i], Shape::side_b(j).data()[i]}) {
       double& of_element = worst[at(side / Shape::corners)];
       of_element = std::max(of_element, d);
@@ -195,7 +196,7 @@ std::vector<Crack> cracks_of(const Joints& j, const Make& crack) {
   std::vector<Crack> all;
   for (Index i = 0; i < j.size(); ++i) {
     if (j.stage.data()[i] != Stage::broken) continue;
-    const auto &work = j.work.data()[i], &inherited = j.inherited_work.data()[i];
+    const auto &work = j.work.data()[i], &inherited = inherited_work(j, i);
     all.push_back(crack(i, work.open + work.slide - inherited.open - inherited.slide));
   }
   std::stable_sort(all.begin(), all.end(),

@@ -29,7 +29,7 @@ std::vector<double> damage(const World& w);
 /// Share of sliding in what a joint has spent: 0 opening, 1 sliding  [-]
 template <class Joints>
 double mode_of(const Joints& joints, Index i) {
-  const auto &work = joints.work.data()[i], &inherited = joints.inherited_work.data()[i];
+  const auto &work = joints.work.data()[i], &inherited = inherited_work(joints, i);
   const double open = work.open - inherited.open, slide = work.slide - inherited.slide;
   const double opened = open > 0.0 ? open : 0.0, slid = slide > 0.0 ? slide : 0.0;
   return opened + slid > 0.0 ? slid / (opened + slid) : 0.0;

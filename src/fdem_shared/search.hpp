@@ -176,14 +176,14 @@ struct SpentBy {
 
 /// The joint between the elements of a couple, if it broke lately, or -1: sides that meet again
 /// later begin anew.
-template <class Shape>
+template <class Shape, class Times>
 struct ParentJoint {
   static constexpr const char* name = "fdem.parent_joint";
   double lately;  ///< the time from which on a break counts  [s]
   View<const Index> a, b;
   View<const typename Shape::Sides> sides;
   View<const Index> side_a, side_b;
-  View<const double> broke_at;
+  Times broke_at;
   View<Index> parent_joint;
   BR_HD void operator()(Index i) const {
     parent_joint[i] = -1;
@@ -435,9 +435,10 @@ void derive_mesh_couples(World& w) {
   if (w.exec.space != Space::host) w.busy.resize(pairs.size());
   const auto& j = std::as_const(w.joints);
   for_each(w.exec, pairs.size(),
-           ParentJoint<Shape>{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(),
-                              std::as_const(Shape::sides(w)).view(), Shape::side_a(j).view(),
-                              Shape::side_b(j).view(), j.broke_at.view(), w.parent_joint.view()});
+           ParentJoint<Shape, decltype(times_of_break(j))>{
+               w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(),
+               std::as_const(Shape::sides(w)).view(), Shape::side_a(j).view(),
+               Shape::side_b(j).view(), times_of_break(j), w.parent_joint.view()});
   // Ghosts have none in it: their owners tell of them.
   place_in_reach(w, false, w.reach_place);
 }

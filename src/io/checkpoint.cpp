@@ -80,9 +80,9 @@ bool is_checkpoint(const std::string& path) {
 }
 
 void CheckpointWriter::section(const std::string& name, const void* items, std::size_t count,
-                               std::size_t item_bytes) {
+                               std::size_t item_bytes, Space space) {
   Section section{name, std::vector<std::byte>(count * item_bytes), count, item_bytes};
-  if (!section.bytes.empty()) std::memcpy(section.bytes.data(), items, section.bytes.size());
+  copy_bytes(section.bytes.data(), Space::host, items, space, section.bytes.size());
   sections_.push_back(std::move(section));
 }
 
@@ -165,6 +165,14 @@ void CheckpointReader::refuse_size(const std::string& prefix, const std::string&
                                    Index expected) const {
   refuse(fmt::format("section {}.{} has {} items, the others of {} have {}", prefix, name, size,
                      prefix, expected));
+}
+
+void CheckpointReader::refuse_places(const std::string& name, std::span<const Index> places,
+                                     Index size) const {
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (places[k] < (k > 0 ? places[k - 1] + 1 : 0) || places[k] >= size)
+      refuse(fmt::format("section {} leads to {} (item {}), expected ascending places below {}",
+                         name, places[k], k, size));
 }
 
 CheckpointReader::CheckpointReader(const std::string& path) : path_(path) {

@@ -6,9 +6,11 @@
 #include <map>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/fields.hpp"
+#include "core/rare_array.hpp"
 #include "io/digest.hpp"
 
 namespace breccia {
@@ -18,7 +20,7 @@ class CheckpointWriter {
  public:
   /// A section of `count` items of `item_bytes` each; the bytes are copied.
   void section(const std::string& name, const void* items, std::size_t count,
-               std::size_t item_bytes);
+               std::size_t item_bytes, Space space = Space::host);
 
   template <class T>
   void value(const std::string& name, const T& item) {
@@ -29,11 +31,16 @@ class CheckpointWriter {
     section(name, characters.data(), characters.size(), 1);
   }
 
-  /// Every array of a state, as sections "<prefix>.<array>", in the order of its each_field.
+  /// Every array of a state, as sections "<prefix>.<array>", in the order of its each_field. Of
+  /// records that few items have: the places of these items, ascending, and for each member of a
+  /// record a section "<prefix>.<member>".
   template <class State>
   void fields(const std::string& prefix, State& state) {
     state.each_field([&](const char* name, const char*, auto& array) {
-      write_array(prefix + "." + name, array);
+      if constexpr (is_rare<std::remove_cvref_t<decltype(array)>>)
+        write_records(prefix, name, array);
+      else
+        write_array(prefix + "." + name, array);
     });
   }
 
@@ -53,13 +60,24 @@ class CheckpointWriter {
  private:
   template <class T>
   void write_array(const std::string& name, const Buffer<T>& array) {
-    Buffer<T> host;
-    copy_to(host, array);
-    section(name, host.data(), static_cast<std::size_t>(host.size()), sizeof(T));
+    section(name, array.data(), static_cast<std::size_t>(array.size()), sizeof(T), array.space());
   }
   template <class Number>
   void write_array(const std::string& name, const PlanesOf<Number>& array) {
     write_array(name, array.items());
+  }
+  template <class T>
+  void write_records(const std::string& prefix, const char* name, const RareArray<T>& array) {
+    const RareArray<T> host = host_copy(array);
+    Buffer<Index> items;
+    Buffer<T> records;
+    host.list(items, records);
+    write_array(prefix + "." + name, items);
+    T::each_member([&](const char* member, const char*, auto of) {
+      std::vector<std::remove_cvref_t<decltype(records.data()->*of)>> values;
+      for (const T& record : records.host()) values.push_back(record.*of);
+      section(prefix + "." + member, values.data(), values.size(), sizeof values[0]);
+    });
   }
 
   struct Section {
@@ -116,7 +134,8 @@ class CheckpointReader {
   std::string text(const std::string& name) const;
 
   /// Fills every array of a state from the sections that CheckpointWriter::fields wrote.
-  /// One that State::older_files_lack() keeps what it holds where the file has none.
+  /// One that State::older_files_lack() keeps what it holds where the file has none. Older files
+  /// hold records of all items, and no section that names those that have one.
   /// @throws CheckpointError if another is missing, or they are not equally long
   template <class State>
   void fields(const std::string& prefix, State& state) const {
@@ -124,7 +143,10 @@ class CheckpointReader {
     state.each_field([&](const char* name, const char*, auto& array) {
       if constexpr (requires { State::older_files_lack(name); })
         if (State::older_files_lack(name) && !has(prefix + "." + name)) return;
-      read_array(prefix + "." + name, array);
+      if constexpr (is_rare<std::remove_cvref_t<decltype(array)>>)
+        return read_records(prefix, name, array, size);
+      else
+        read_array(prefix + "." + name, array);
       if (size >= 0 && array.size() != size) refuse_size(prefix, name, array.size(), size);
       size = array.size();
     });
@@ -153,6 +175,36 @@ class CheckpointReader {
     array.resize(static_cast<Index>(found.count / 3));
     read_array(name, array.items());
   }
+
+  /// @param size  of the state's other arrays
+  template <class T>
+  void read_records(const std::string& prefix, const char* name, RareArray<T>& array,
+                    Index size) const {
+    BR_ASSERT(size >= 0);
+    const std::string listed = prefix + "." + name;
+    Buffer<Index> items;
+    if (has(listed)) {
+      read_array(listed, items);
+      refuse_places(listed, items.host(), size);
+    } else {
+      items.resize(size);
+      for (Index i = 0; i < size; ++i) items.data()[i] = i;
+    }
+    Buffer<T> records(Space::host, items.size());
+    T::each_member([&](const char* member, const char*, auto of) {
+      using Value = std::remove_cvref_t<decltype(records.data()->*of)>;
+      Buffer<Value> values;
+      read_array(prefix + "." + member, values);
+      if (values.size() != items.size()) refuse_size(prefix, member, values.size(), items.size());
+      for (Index i = 0; i < items.size(); ++i) records.data()[i].*of = values.data()[i];
+    });
+    RareArray<T> host;
+    host.resize(size);
+    for (Index i = 0; i < items.size(); ++i) host.set(items.data()[i], records.data()[i]);
+    copy_to(array, host);
+  }
+  /// Places that do not ascend or lead beyond `size`.
+  void refuse_places(const std::string& name, std::span<const Index> places, Index size) const;
 
   std::string path_;
   std::vector<std::byte> file_;

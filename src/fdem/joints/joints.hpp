@@ -92,6 +92,30 @@ struct Joints {
   Index size() const { return edge_a.size(); }
 };
 
+// Of joint i, on the host, and of all joints, for kernels: by the words that tetrahedra have, too
+// (fdem3/joints/joints.hpp).
+inline const JointPoints& points_of(const Joints& j, Index i) {
+  return j.points.data()[i];
+}
+inline double broke_at(const Joints& j, Index i) {
+  return j.broke_at.data()[i];
+}
+inline const JointWork& inherited_work(const Joints& j, Index i) {
+  return j.inherited_work.data()[i];
+}
+inline void inherit(Joints& j, Index i, const JointWork& work) {
+  j.inherited_work.data()[i] = work;
+}
+inline void take_inherited(Joints& to, const Joints& from) {
+  copy_to(to.inherited_work, from.inherited_work);
+}
+inline View<const double> times_of_break(const Joints& j) {
+  return j.broke_at.view();
+}
+inline View<const JointWork> works_inherited(const Joints& j) {
+  return j.inherited_work.view();
+}
+
 /// The corners that a joint ties: a0 and a1 along side a; b0 faces a0, b1 faces a1.
 struct JointEnds {
   Index a0, a1, b0, b1;

@@ -158,13 +158,6 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
   }
 }
 
-/// Forces and work of broken joints, which the contact of their faces takes over.
-struct JointLegacy {
-  View<const double> pressing;
-  View<const Vec3> shear_at_break;
-  View<JointWork> inherited_work;
-};
-
 /// Normal force by potential, both ways; Coulomb friction with one spring a couple that remembers.
 struct CoupleForces {
   static constexpr const char* name = "fdem3.couples";
@@ -177,7 +170,8 @@ struct CoupleForces {
   View<const Index> a, b;
   View<const Index> parent_joint;  ///< the joint between them where it broke in the step before, or
                                    ///< -1
-  JointLegacy joints;
+  RareView<JointFailure> broken;   ///< forces and work of joints, which the contact of their faces
+                                   ///< takes over
   View<CoupleState> state;
   View<CoupleForce> force;
 
@@ -335,8 +329,9 @@ struct CoupleForces {
   /// part of the joint's work.
   BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Partner& of_a,
                      const Partner& of_b) const {
-    const double pressing = joints.pressing[joint];
-    if (!(pressing > 0.0)) return;
+    JointFailure* const legacy = broken.find(joint);
+    if (legacy == nullptr || !(legacy->pressing > 0.0)) return;
+    const double pressing = legacy->pressing;
     Pressing whole;
     press(law.penalty, of_a, of_b, whole);
     const double size = norm(whole.on_a);
@@ -344,7 +339,7 @@ struct CoupleForces {
     kept.scale = min(2.0, max(0.01, pressing / size));
     const double now = kept.scale * size;
     const Vec3 n = (1.0 / size) * whole.on_a;
-    Vec3 drag = joints.shear_at_break[joint];
+    Vec3 drag = legacy->shear_at_break;
     drag -= dot(drag, n) * n;
     const double drawn = norm(drag), most = law.friction * now;
     if (drawn > most) drag = (most / drawn) * drag;
@@ -356,7 +351,7 @@ struct CoupleForces {
                           stiffness > 0.0 ? 0.5 * dot(drag, drag) / stiffness : 0.0};
     kept.work = given.open + given.slide;
     kept.sprung = given.slide;
-    joints.inherited_work[joint] = given;
+    legacy->inherited = given;
   }
 };
 

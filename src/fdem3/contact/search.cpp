@@ -18,6 +18,16 @@ struct NoteExposed {
   }
 };
 
+/// Room for records of joints that fail until the next search: for all joints where the host takes
+/// each step, which would have to look whether some wait.
+void make_room_for_failures(World& w) {
+  RareArray<JointFailure>& records = w.joints.failure;
+  if (w.domain.single_rank() && !w.meets_spheres)
+    records.make_room(spare_records(w.exec.space, records.size()));
+  else
+    records.make_room_for_all();
+}
+
 }  // namespace
 
 /// Ghosts hear from their owners which of their faces are exposed: not all their joints are here.
@@ -43,6 +53,7 @@ bool couples_are_due(World& w) {
 
 void find_couples(World& w) {
   fdem_shared::find_mesh_couples(w);
+  if (w.exec.space != Space::host) make_room_for_failures(w);
 }
 
 void derive_couples(World& w) {

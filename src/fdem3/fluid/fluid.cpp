@@ -11,7 +11,8 @@ struct TellCrack {
   View<const std::uint8_t> turn;
   View<const FaceShape> shape;
   View<const GlobalId> id;
-  View<const double> length, broke_at;
+  View<const double> length;
+  TimesOfBreak broke_at;
   View<CrackSide> crack;
   BR_HD void operator()(Index i) const {
     const Index j = joint[i], a = face_a[j], b = face_b[j];
@@ -64,7 +65,7 @@ void tell_cracks(World& part, const Buffer<Index>& joints, Buffer<CrackSide>& to
       part.exec, joints.size(),
       TellCrack{joints.view(), j.face_a.view(), j.face_b.view(), fdem_shared::node_vertices(part),
                 j.turn.view(), j.shape.view(), std::as_const(part.tetrahedra.id).view(),
-                j.length.view(), j.broke_at.view(), told.view()});
+                j.length.view(), times_of_break(j), told.view()});
 }
 
 void flow_on(World& part) {

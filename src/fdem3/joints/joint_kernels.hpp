@@ -5,6 +5,7 @@
 #include "fdem/joints/joint_kernels.hpp"
 #include "fdem3/joints/joints.hpp"
 #include "fdem3/laws/rock_failure.hpp"
+#include "fdem_shared/wanted.hpp"
 #include "math/records.hpp"
 
 namespace breccia::fdem3 {
@@ -26,12 +27,14 @@ struct JointForces {
   View<const ElasticTetrahedron> graded;  ///< laws that hold it by global id; empty: no slope
   View<const GlobalId> id;                ///< of tetrahedra
   View<JointStage> stage;
-  View<JointPoints> points;
   View<JointForce> force;
   View<JointWork> work;
-  View<double> broke_at, pressing;
-  View<Vec3> shear_at_break;
-  View<std::uint8_t> changed;  ///< flags of fdem::Change: contacts must be searched
+  RareView<JointFailure> failure;
+  View<std::uint8_t> changed;            ///< flags of fdem::Change: contacts must be searched
+  std::int32_t* host_request = nullptr;  ///< gets request_room where a joint's record finds none;
+                                         ///< null: whoever launches it looks
+
+  static constexpr std::int32_t goes_on_at_request = fdem_shared::request_room;
 
   template <class R>
   struct Loaded {
@@ -258,6 +261,13 @@ struct JointForces {
     return left;
   }
 
+  /// Finds or makes the record of a joint. False if there is no room: it waits, with nothing
+  /// written.
+  BR_HD bool has_record(Index i, JointFailure*& kept) const {
+    kept = failure.find_or_make(i);
+    if (kept == nullptr && host_request != nullptr) *host_request = fdem_shared::request_room;
+    return kept != nullptr;
+  }
   BR_HD void fail_or_soften(Index i, const Loaded<double>& loaded) const {
     const JointStage before = loaded.before;
     const JointEnds& e = loaded.ends;
@@ -269,17 +279,19 @@ struct JointForces {
     Vec3 way[3];
     for (int k = 0; k < 3; ++k) way[k] = dt * (node(e.a[k]).velocity - node(e.b[k]).velocity);
     if (is_parted(before) || collapsed) {
+      JointFailure* kept = nullptr;
+      if (!is_parted(before) && !has_record(i, kept)) return;
       if (before == JointStage::whole) begin_work(i, bonds[law[i]], offset, e);
       JointOpening flat = o;
       if (collapsed) flat.normal = {};  // it has none: all is sliding
       book_work(i, flat, way, last, JointForce{});
-      if (!is_parted(before)) finish(i);
+      if (kept != nullptr) finish(i, *kept);
       force[i] = {};
       return;
     }
     const JointBond& bond = bonds[law[i]];
     JointPoints state{};
-    if (before != JointStage::whole) state = points[i];
+    if (before != JointStage::whole) state = failure.part<&JointFailure::points>(i);
     const Vec3 slip = slip_in_space(o, offset);
     fdem::BondTraction<double> bond_traction[3];
     double open[3], slid[3];
@@ -306,6 +318,8 @@ struct JointForces {
       failed += state.point[q].damage >= 1.0 ? 1 : 0;
       damaged = damaged || state.point[q].damage > 0.0;
     }
+    JointFailure* kept = nullptr;
+    if (damaged && !has_record(i, kept)) return;
     if (before == JointStage::whole) {
       if (damaged)
         begin_work(i, bond, offset, e);
@@ -315,16 +329,16 @@ struct JointForces {
     store(i, traction, area);
     if (damaged) {
       book_work(i, o, way, last, force[i]);
-      points[i] = state;
+      kept->points = state;
       if (before == JointStage::whole) {
         stage[i] = JointStage::softened;
         fdem::raise(changed, fdem::change_softened);
       }
     }
     if (failed >= 2) {
-      pressing[i] = max(0.0, pressure);
-      shear_at_break[i] = drag;
-      finish(i);
+      kept->pressing = max(0.0, pressure);
+      kept->shear_at_break = drag;
+      finish(i, *kept);
     }
   }
 
@@ -401,10 +415,20 @@ struct JointForces {
     w.open -= 0.5 * open;
     w.slide -= 0.5 * (all - open);
   }
-  BR_HD void finish(Index i) const {
+  BR_HD void finish(Index i, JointFailure& kept) const {
     stage[i] = JointStage::broken;
-    broke_at[i] = time;
+    kept.broke_at = time;
     fdem::raise(changed, fdem::change_broken);
+  }
+};
+
+/// Joints that found no room for their records, when there is some.
+struct WaitingJoints {
+  static constexpr const char* name = "fdem3.waiting_joints";
+  JointForces joints;
+  BR_HD void set(const StepTime& now) { joints.set(now); }
+  BR_HD void operator()(Index i) const {
+    if (joints.failure.waits(i)) joints(i);
   }
 };
 

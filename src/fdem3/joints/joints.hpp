@@ -1,6 +1,7 @@
 #pragma once
 // Joints of tetrahedra across their common faces: arrays and geometry.
 
+#include "core/rare_array.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/joints/joints.hpp"
 #include "fdem3/elements/tetrahedra.hpp"
@@ -51,27 +52,42 @@ struct FaceShapeOf {
 };
 using FaceShape = FaceShapeOf<double>;
 
+/// What is kept of a joint from the step on in which it softens, breaks or is cut. All others are
+/// as this begins.
+struct JointFailure {
+  JointPoints points;      ///< damage and largest opening and slip
+  double broke_at = -1.0;  ///< below 0: it is not broken  [s]
+  double pressing = 0.0;   ///< compressive force when it broke  [N]
+  Vec3 shear_at_break;     ///< on side a  [N]
+  JointWork inherited;     ///< of its work, what contact of its faces began with  [J]
+
+  /// Visits its members by the names that checkpoints have for them.
+  template <class Visit>
+  static void each_member(Visit&& member) {
+    member("points", "SI", &JointFailure::points);
+    member("broke_at", "s", &JointFailure::broke_at);
+    member("pressing", "N", &JointFailure::pressing);
+    member("shear_at_break", "N", &JointFailure::shear_at_break);
+    member("inherited_work", "J", &JointFailure::inherited);
+  }
+};
+
 /// Cohesive joints. Side a is the tetrahedron with the lower global id. Integration points lie in
 /// the middles of the edges (0, 1), (1, 2), (2, 0) of the face, a third of its area each. One item
 /// for each joint. Who writes it: as of Tetrahedra.
 struct Joints {
-  Buffer<Index> face_a, face_b;  ///< the two faces that it joins  [-]  (set-up, ranks)
-  Buffer<std::uint8_t> turn;     ///< see JointEnds  [-]  (constant)
-  Buffer<Index> law;             ///< index into Case::bonds  [-]  (constant)
-  Buffer<FaceShape> shape;       ///< at the start  [m]  (constant)
-  Buffer<double> length;         ///< h = (V_a + V_b) / A  [m]  (constant)
-  Buffer<double> strength;       ///< over its law's  [-]  (constant)
-  Buffer<Vec3> preset;           ///< opening and slip along (0, 1) and across it at which it was
-                                 ///< joined; empty: none  [m]  (set-up, insertion)
-  Buffer<JointStage> stage;      ///<  [-]  (insertion, pairs)
-  Buffer<JointPoints> points;    ///< damage and largest opening and slip  (pairs)
-  Buffer<JointForce> force;      ///< of this time  [N]  (pairs)
-  Buffer<JointWork> work;        ///< taken up so far  [J]  (pairs)
-  Buffer<double> broke_at;       ///< below 0: it is not broken  [s]  (pairs)
-  Buffer<double> pressing;       ///< compressive force when it broke  [N]  (pairs)
-  Buffer<Vec3> shear_at_break;   ///< on side a  [N]  (pairs)
-  Buffer<JointWork> inherited_work;  ///< of its work, what contact of its faces began with  [J]
-                                     ///< (pairs)
+  Buffer<Index> face_a, face_b;     ///< the two faces that it joins  [-]  (set-up, ranks)
+  Buffer<std::uint8_t> turn;        ///< see JointEnds  [-]  (constant)
+  Buffer<Index> law;                ///< index into Case::bonds  [-]  (constant)
+  Buffer<FaceShape> shape;          ///< at the start  [m]  (constant)
+  Buffer<double> length;            ///< h = (V_a + V_b) / A  [m]  (constant)
+  Buffer<double> strength;          ///< over its law's  [-]  (constant)
+  Buffer<Vec3> preset;              ///< opening and slip along (0, 1) and across it at which it was
+                                    ///< joined; empty: none  [m]  (set-up, insertion)
+  Buffer<JointStage> stage;         ///<  [-]  (insertion, pairs)
+  Buffer<JointForce> force;         ///< of this time  [N]  (pairs)
+  Buffer<JointWork> work;           ///< taken up so far  [J]  (pairs)
+  RareArray<JointFailure> failure;  ///< of those that are not whole, or no longer  (pairs, stage)
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -83,15 +99,39 @@ struct Joints {
     field("length", "m", length);
     field("strength", "-", strength);
     field("stage", "-", stage);
-    field("points", "SI", points);
     field("work", "J", work);
-    field("broke_at", "s", broke_at);
-    field("pressing", "N", pressing);
-    field("shear_at_break", "N", shear_at_break);
-    field("inherited_work", "J", inherited_work);
+    field("failed", "SI", failure);
   }
   Index size() const { return face_a.size(); }
 };
+
+// Of joint i, on the host; the plane method has the same words (fdem/joints/joints.hpp).
+inline JointPoints points_of(const Joints& j, Index i) {
+  return j.failure.view().part<&JointFailure::points>(i);
+}
+inline double broke_at(const Joints& j, Index i) {
+  return j.failure.view().part<&JointFailure::broke_at>(i);
+}
+inline JointWork inherited_work(const Joints& j, Index i) {
+  return j.failure.view().part<&JointFailure::inherited>(i);
+}
+inline void inherit(Joints& j, Index i, const JointWork& work) {
+  j.failure.make(i).inherited = work;
+}
+inline void take_inherited(Joints& to, const Joints& from) {
+  copy_to(to.failure, from.failure);
+}
+
+// Of all joints, for kernels.
+using FailedJoints = RareView<const JointFailure>;
+using TimesOfBreak = PartOfRecords<JointFailure, &JointFailure::broke_at>;
+using InheritedWork = PartOfRecords<JointFailure, &JointFailure::inherited>;
+inline TimesOfBreak times_of_break(const Joints& j) {
+  return {j.failure.view()};
+}
+inline InheritedWork works_inherited(const Joints& j) {
+  return {j.failure.view()};
+}
 
 /// How far the two faces of a joint have moved apart.
 template <class R>

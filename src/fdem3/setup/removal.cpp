@@ -31,7 +31,7 @@ void cut_off_removed(World& w) {
         const Vec3 offset = j.preset.size() > 0 ? j.preset.data()[i] : Vec3{};
         const fdem::StoredEnergy held =
             stored_in(bonds[at(j.law.data()[i])], j.strength.data()[i], j.length.data()[i],
-                      j.shape.data()[i].area(), offset, opening_of(a, b), j.points.data()[i]);
+                      j.shape.data()[i].area(), offset, opening_of(a, b), points_of(j, i));
         return JointWork{work.open - held.open, work.slide - held.slide};
       });
 }

@@ -25,12 +25,9 @@ inline JointForces joint_kernel(World& w) {
           w.given->in_situ.graded() ? w.given->laws.view() : View<const ElasticTetrahedron>{},
           w.tetrahedra.id.view(),
           j.stage.view(),
-          j.points.view(),
           j.force.view(),
           j.work.view(),
-          j.broke_at.view(),
-          j.pressing.view(),
-          j.shear_at_break.view(),
+          j.failure.view(),
           w.exposed.changed.view()};
 }
 
@@ -46,8 +43,7 @@ inline CoupleForces couple_kernel(World& w) {
           std::as_const(c.pairs.a).view(),
           std::as_const(c.pairs.b).view(),
           std::as_const(w.parent_joint).view(),
-          {std::as_const(j.pressing).view(), std::as_const(j.shear_at_break).view(),
-           j.inherited_work.view()},
+          j.failure.view(),
           c.history.state.view(),
           c.history.force.view()};
 }

@@ -27,12 +27,12 @@
 namespace breccia::fdem_shared {
 
 /// Broken joints up to a time, with those that soften if asked for.
-template <class Stage>
+template <class Stage, class Times>
 struct IsOpenCrack {
   double until;  ///<  [s]
   bool softened;
   View<const Stage> stage;
-  View<const double> broke_at;
+  Times broke_at;
   BR_HD bool operator()(Index i) const {
     const bool open = stage[i] == Stage::broken && broke_at[i] <= until;
     return open || (softened && stage[i] == Stage::softened);
@@ -45,12 +45,12 @@ auto cracks_until(World& part, double until, bool softened = false) {
   using Shape = ShapeOf<World>;
   using Crack = typename Shape::Crack;
   const auto& j = part.joints;
-  const Buffer<Index> broken = items_where(
-      part.exec, j.size(),
-      of_owned(
-          part.domain, false,
-          IsOpenCrack<typename Shape::Stage>{until, softened, j.stage.view(), j.broke_at.view()},
-          ListedElement<Shape::corners>{Shape::side_a(j).view()}));
+  const Buffer<Index> broken =
+      items_where(part.exec, j.size(),
+                  of_owned(part.domain, false,
+                           IsOpenCrack<typename Shape::Stage, decltype(times_of_break(j))>{
+                               until, softened, j.stage.view(), times_of_break(j)},
+                           ListedElement<Shape::corners>{Shape::side_a(j).view()}));
   Buffer<Crack> told(part.exec.space, broken.size());
   tell_cracks(part, broken, told);
   std::vector<Crack> all;

@@ -143,12 +143,16 @@ void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
 /// Joints that nothing has happened to yet.
 template <class Joints>
 void begin_joints(Joints& j, Index count) {
-  copy_to(j.broke_at, std::vector<double>(at(count), -1.0));
-  j.points.resize(count);
   j.work.resize(count);
-  j.pressing.resize(count);
-  j.shear_at_break.resize(count);
-  j.inherited_work.resize(count);
+  if constexpr (requires { j.failure; }) {
+    j.failure.resize(count);
+  } else {
+    copy_to(j.broke_at, std::vector<double>(at(count), -1.0));
+    j.points.resize(count);
+    j.pressing.resize(count);
+    j.shear_at_break.resize(count);
+    j.inherited_work.resize(count);
+  }
 }
 
 /// Places of corners at the start, for displacements and strains.

@@ -167,7 +167,8 @@ void cut_off(World& w, const Spent& spent_by) {
                          gone[at(Shape::side_b(j).data()[i] / Shape::corners)] != 0;
     auto& stage = j.stage.data()[i];
     if (!at_gone || is_parted(stage)) continue;
-    j.inherited_work.data()[i] = j.work.data()[i] = spent_by(nodes, j, i);
+    j.work.data()[i] = spent_by(nodes, j, i);
+    inherit(j, i, j.work.data()[i]);
     stage = std::remove_reference_t<decltype(stage)>::cut;
   }
   const auto back = [](auto& to, const auto& from) {
@@ -176,7 +177,7 @@ void cut_off(World& w, const Spent& spent_by) {
   };
   back(w.joints.stage, j.stage);
   back(w.joints.work, j.work);
-  back(w.joints.inherited_work, j.inherited_work);
+  take_inherited(w.joints, j);
   copy_to(w.exposed.changed, std::vector<std::uint8_t>{1, 1});  // the next step searches
   if (j.size() > 0) derive_bundles(w);
   w.graph.clear();

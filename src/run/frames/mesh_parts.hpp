@@ -187,10 +187,11 @@ void add_crack_fields(const Joints& j, const Now& now, const OwnParts& own,
   add(Kind::mode, -1.0F, [&](Index i) { return mode_of(j, i); });
   add(Kind::damage, 1.0F, [&](Index i) {
     double worst = j.stage.data()[i] == Stage::broken ? 1.0 : 0.0;
-    for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
+    const auto& points = points_of(j, i);
+    for (const auto& p : points.point) worst = std::max(worst, p.damage);
     return worst;
   });
-  add(Kind::time, 0.0F, [&](Index i) { return j.broke_at.data()[i]; });
+  add(Kind::time, 0.0F, [&](Index i) { return broke_at(j, i); });
   add(Kind::opening, 0.0F, [&](Index i) { return now.opening(i); });
   add(Kind::slip, 0.0F, [&](Index i) { return now.slip(i); });
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/fields.hpp"
+#include "core/rare_array.hpp"
 #include "math/mat3.hpp"
 #include "math/vec.hpp"
 #include "math/vec2.hpp"
@@ -101,8 +102,12 @@ class StateArrays {
   /// The arrays of a state under a prefix such as "joints.".
   template <class State>
   void add_fields(const std::string& prefix, State& state) {
-    state.each_field(
-        [&](const char* name, const char* unit, auto& array) { add(prefix + name, unit, array); });
+    state.each_field([&](const char* name, const char* unit, auto& array) {
+      if constexpr (is_rare<std::remove_cvref_t<decltype(array)>>)
+        add_records(prefix, array);
+      else
+        add(prefix + name, unit, array);
+    });
   }
   template <class T>
   void add(const std::string& name, const char* unit, const Buffer<T>& array) {
@@ -162,6 +167,24 @@ class StateArrays {
   }
 
  private:
+  /// The members of records, of all items.
+  template <class T>
+  void add_records(const std::string& prefix, const RareArray<T>& records) {
+    T::each_member([&](const char* member, const char* unit, auto of) {
+      using Value = std::remove_cvref_t<decltype(std::declval<const T&>().*of)>;
+      if constexpr (requires { ItemLayout<Value>::shape(); })
+        add_found(prefix + member, unit, records.size(), [&] {
+          const RareArray<T> host = host_copy(records);
+          std::vector<Value> values;
+          values.reserve(static_cast<std::size_t>(host.size()));
+          for (Index i = 0; i < host.size(); ++i) {
+            const T* const record = host.find(i);
+            values.push_back(record != nullptr ? record->*of : T{}.*of);
+          }
+          return values;
+        });
+    });
+  }
   template <class T>
   StateArray& place(const std::string& name, const char* unit, const Buffer<T>& items) {
     StateArray& array = found.emplace_back();

@@ -46,8 +46,7 @@ class OneJoint {
     copy_to(shape_, std::vector<FaceShape>{FaceShape::of(corner[0], corner[1], corner[2])});
     copy_to(length_, std::vector<double>{0.5 * mm});
     copy_to(strength_, std::vector<double>{1.0});
-    stage_.resize(1), points_.resize(1), force_.resize(1), work_.resize(1), broke_.resize(1);
-    pressing_.resize(1), shear_.resize(1), changed_.resize(2);
+    stage_.resize(1), failure_.resize(1), force_.resize(1), work_.resize(1), changed_.resize(2);
   }
   NodeState& node(Index n) { return nodes_.data()[n / 4].at[n % 4]; }
   NodeState& on_a(int k) { return node(a_[k]); }
@@ -79,19 +78,16 @@ class OneJoint {
                              {},
                              {},
                              stage_.view(),
-                             points_.view(),
                              force_.view(),
                              work_.view(),
-                             broke_.view(),
-                             pressing_.view(),
-                             shear_.view(),
+                             failure_.view(),
                              changed_.view()};
     for_each(Exec{}, 1, kernel);
     return force_.data()[0];
   }
   const JointWork& work() const { return work_.data()[0]; }
   JointStage stage() const { return stage_.data()[0]; }
-  const JointPoints& points() const { return points_.data()[0]; }
+  JointPoints points() const { return failure_.item(0).points; }
 
  private:
   const Vec3 start_[3] = {{0.0, 0.0, 0.0}, {mm, 0.0, 0.0}, {0.2 * mm, 0.9 * mm, 0.0}};
@@ -101,12 +97,11 @@ class OneJoint {
   Buffer<Index> face_a_, face_b_, law_;
   Buffer<std::uint8_t> turn_, changed_;
   Buffer<FaceShape> shape_;
-  Buffer<double> length_, strength_, broke_, pressing_;
+  Buffer<double> length_, strength_;
   Buffer<JointStage> stage_;
-  Buffer<JointPoints> points_;
+  RareArray<JointFailure> failure_;
   Buffer<JointForce> force_;
   Buffer<JointWork> work_;
-  Buffer<Vec3> shear_;
 };
 
 void expect_near(const JointForce& f, const Vec3& a0, const Vec3& a1, const Vec3& a2) {

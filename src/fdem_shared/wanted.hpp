@@ -1,0 +1,16 @@
+#pragma once
+// What a device wants of the host in the middle of a step.
+
+#include <cstdint>
+
+namespace breccia::fdem_shared {
+
+/// Values of StepClock::host_request. Insertion and room come when the search is done: the host
+/// takes the rest of the step.
+enum Wanted : std::int32_t {
+  request_search = 1,
+  request_insertion = 2,
+  request_room = 3  ///< joints that fail wait for room for their records
+};
+
+}  // namespace breccia::fdem_shared
