@@ -193,13 +193,18 @@ Problem told_of_others(Problem problem, const std::string& method) {
   const std::string path = problem.text.substr(0, end);
   if (end == std::string::npos || path.find_first_of(" =\"") != std::string::npos) return problem;
   std::vector<std::string> others;
+  bool elsewhere = false;  // the method has the word, in another table
   const auto ask = [&](const char* other, const std::vector<KeyInfo>& keys) {
-    if (other != method && has_key(keys, path)) others.emplace_back(other);
+    if (!has_key(keys, path)) return;
+    if (other == method)
+      elsewhere = true;
+    else
+      others.emplace_back(other);
   };
   ask("dem3d", list_keys<dem::Config>(""));
   ask("fdem2d", list_keys<fdem::Config>(""));
   ask("fdem3d", list_keys<fdem3::Config>(""));
-  if (others.empty()) return problem;
+  if (elsewhere || others.empty()) return problem;
   problem.correction.reset();
   problem.text = fmt::format("{}{} of {}; {} {} it", path, unknown, method,
                              fmt::join(others, " and "), others.size() > 1 ? "have" : "has");

@@ -469,6 +469,9 @@ TEST(CheckCommand, tells_which_methods_have_a_key) {
   EXPECT_EQ(told("dem3d", "body = [{ name = \"a\", weibull = { modulus = 4.0 } }]\n"),
             "body.a.weibull is not a key of dem3d; fdem2d and fdem3d have it");
   EXPECT_EQ(told("fdem2d", "links.range = 1.4\n"), "links is not a key of fdem2d; dem3d has it");
+  // a word that the method has itself, in another table
+  EXPECT_EQ(told("fdem2d", "joint = { seam = { tension = 1e6 } }\n"),
+            "joint.seam.tension is not a key; allowed are between, strength");
   EXPECT_EQ(told("dem3d", "[[bodi]]\nname = \"a\"\n"),
             "bodi is not a key; did you mean body? (corrected)");
 }
