@@ -3,7 +3,8 @@
 
 The benchmarks in bench, beside src, may include every layer and no layer includes them.
 The key to writing the constants of a run, core/set_up.hpp, is for the folders `setup` and the benchmarks.
-Folders `setup` run no loops: nvcc compiles few of their files.
+Folders `setup`, and files that CMakeLists.txt (br_kernels) leaves to the host's compiler, run no loops and include no header that
+does: their text would stand for nvcc's, too, and walk over arrays of the GPU. Runs of the host (host_run.cpp) loop over arrays of the host.
 
 Usage: check_includes.py [SOURCE_FOLDER]   (default: src beside this script's folder)
 Exit status 0 if all is well, 1 with a line for each violation.
@@ -37,7 +38,22 @@ LOOPS = {"exec/for_each.hpp", "exec/fold_sum.hpp", "exec/launch.hpp", "domain/ow
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
+def has_loops(header):
+    """Whether a header includes one of LOOPS itself."""
+    return header.is_file() and any(found.group(1) in LOOPS for found in map(INCLUDE.match, header.read_text().splitlines()) if found)
+
+
+def left_to_host(source):
+    """Sources that g++ compiles in a CUDA build, too, of libraries with kernels."""
+    build = source.parent / "CMakeLists.txt"
+    for name, hosts in re.findall(r"^br_kernels\((\w+)([^)]*)\)", build.read_text() if build.is_file() else "", re.M):
+        for path in (source / name).rglob("*.cpp"):
+            if any(f"/{path.as_posix()}".endswith(f"/{host}.cpp") for host in hosts.split() if host != "host_run"):
+                yield path
+
+
 def violations(source):
+    hosts = set(left_to_host(source))
     for path in sorted([*source.rglob("*"), *(source.parent / "bench").rglob("*")]):
         if path.suffix not in (".hpp", ".cpp"):
             continue
@@ -55,8 +71,9 @@ def violations(source):
                 continue
             if found.group(1) == KEY and "setup" not in inside.parts and layer != "bench":
                 yield f"{path}:{number}: constants of a run are written in setup alone; read World::given"
-            if found.group(1) in LOOPS and "setup" in inside.parts:
-                yield f"{path}:{number}: a host's compiler makes set-up where arrays lie on a GPU: loops stand beside the steps"
+            loops = found.group(1) in LOOPS or has_loops(source / found.group(1))
+            if loops and layer != "exec" and ("setup" in inside.parts or path in hosts):
+                yield f"{path}:{number}: a host's compiler makes this where arrays lie on a GPU: loops stand beside the steps"
             target = found.group(1).split("/")[0]
             if target in ALLOWED and target != layer and target not in ALLOWED[layer]:
                 yield f"{path}:{number}: {layer} must not see {target}"

@@ -48,9 +48,23 @@ inline namespace host_loops {
 inline namespace loops {
 #endif
 
+/// Whether a kernel loops over arrays of the host in every build: a run of the host says so.
+template <class Kernel>
+inline constexpr bool on_host_alone = false;
+
+#if defined(BR_CUDA) && !defined(__CUDACC__)
+// Templates around this loop have one name in all files, so the linker may take the text that
+// cannot launch for the one that can.
+#define BR_REFUSE_LOOP(Kernel) \
+  static_assert(on_host_alone<Kernel>, "nvcc must compile this file: CMakeLists.txt, br_kernels")
+#else
+#define BR_REFUSE_LOOP(Kernel) static_assert(true)
+#endif
+
 /// kernel(i) for every i in [0, count), in any order, static schedule.
 template <class Kernel>
 void for_each(const Exec& exec, Index count, const Kernel& kernel) {
+  BR_REFUSE_LOOP(Kernel);
   if (count <= 0) return;
 #if defined(__CUDACC__)
   if (exec.space == Space::cuda) {
@@ -111,6 +125,7 @@ inline void fold_item(Value& value, const Kernel& kernel, Index i, const Combine
 template <class Value, class Kernel, class Combine>
 Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
            const Combine& combine) {
+  BR_REFUSE_LOOP(Kernel);
   struct Partial {  // by itself in memory: std::vector<bool> would share words among threads
     Value value;
   };

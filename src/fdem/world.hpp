@@ -212,6 +212,8 @@ bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
 void wake_joints(World& w);
+/// Case::free_step of a whole model.  [s]
+double free_time_step(World& w);
 /// Safe share of the stable step of all triangles, rounded down to six bits.  [s]
 double choose_time_step(World& w);
 /// The step to come, or less where these triangles allow less: after their joints have changed.

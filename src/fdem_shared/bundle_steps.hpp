@@ -171,10 +171,10 @@ double least_step_of_corners(World& w, Pressed where) {
   return w.domain.least(tied < alone ? tied : alone);
 }
 
-/// Sets Case::free_step, when the model is whole.
+/// Case::free_step of a whole model.  [s]
 template <class World>
-void note_free_step(World& w, double& free_step) {
-  if (has_bundles(w)) free_step = least_step_of_corners(w, Pressed::nowhere);
+double world_free_step(World& w) {
+  return has_bundles(w) ? least_step_of_corners(w, Pressed::nowhere) : 0.0;
 }
 
 }  // namespace breccia::fdem_shared

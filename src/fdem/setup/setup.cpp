@@ -15,7 +15,6 @@
 #include "fdem/setup/regions.hpp"
 #include "fdem/setup/warnings.hpp"
 #include "fdem/shape.hpp"
-#include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/setup/elements.hpp"
 #include "fdem_shared/setup/heavier.hpp"
 #include "fdem_shared/setup/removal.hpp"
@@ -242,7 +241,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   find_couples(w);
   load_faces(w, faces);
   fdem_shared::add_mass_to_ruling(w);
-  fdem_shared::note_free_step(w, set_up(w).free_step);
+  set_up(w).free_step = free_time_step(w);
   evaluate_forces(w);
   refuse_endless(w);
   for (std::string& doubt : doubts(w, config)) given.warnings.push_back(std::move(doubt));

@@ -42,6 +42,9 @@ void list_motions(World& w) {
 AllowedStep allowed_step(const World& w) {
   return fdem_shared::world_allowed_step(w);
 }
+double free_time_step(World& w) {
+  return fdem_shared::world_free_step(w);
+}
 double choose_time_step(World& w) {
   return fdem_shared::world_time_step(w);
 }

@@ -13,7 +13,6 @@
 #include "fdem3/setup/mesh_faces.hpp"
 #include "fdem3/setup/regions.hpp"
 #include "fdem3/shape.hpp"
-#include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/setup/elements.hpp"
 #include "fdem_shared/setup/heavier.hpp"
 #include "fdem_shared/setup/removal.hpp"
@@ -314,7 +313,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   w.exposed.vertex.resize(static_cast<Index>(model.point.size()));
   find_couples(w);
   fdem_shared::add_mass_to_ruling(w);
-  fdem_shared::note_free_step(w, set_up(w).free_step);
+  set_up(w).free_step = free_time_step(w);
   evaluate_forces(w);
   refuse_endless(w);
   fdem_shared::look_for_unbalanced_weight(

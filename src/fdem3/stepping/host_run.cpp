@@ -9,6 +9,9 @@
 #include "fdem3/stepping/launches.hpp"
 #include "fdem3/stepping/step.hpp"
 
+template <>
+inline constexpr bool breccia::on_host_alone<breccia::fdem3::CoupleForces> = true;
+
 namespace breccia::fdem3 {
 
 bool move_range(const World& w, const MoveTetrahedra& kernel, Index begin, Index end) {
