@@ -15,13 +15,12 @@
 #include "core/output_config.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/contact/couples.hpp"
-#include "fdem/laws/explosive.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/triangles/loads.hpp"
 #include "fdem/triangles/motion.hpp"
 #include "fdem_shared/bolts/bolts.hpp"
-#include "fdem_shared/fluid/given.hpp"
+#include "fdem_shared/fluid/gas_source.hpp"
 
 namespace breccia::fdem {
 
@@ -31,14 +30,8 @@ struct NodeSet {
   std::vector<Index> nodes;  ///< 3 triangle + corner, ascending, in the whole mesh  [-]
 };
 
-/// Of a fluid; its ports are vertices.
-struct FluidSource : fdem_shared::FluidSource {
-  /// Of an explosive: border edges around each hole, and what bears its pressure there; else empty.
-  std::vector<std::vector<Index>> holes{};
-  std::vector<LoadedEdge> borders{};
-  ExplosiveGas law{};
-  double charge = 0.0;  ///< volume of the explosive per thickness  [m2]
-};
+/// Of a fluid; its ports are vertices. Holes: border edges in the order in which they run around.
+using FluidSource = fdem_shared::GasSourceOf<LoadedEdge, std::vector<Index>>;
 
 using Bolt = fdem_shared::BoltOf<Vec2>;
 using FlowCase = fdem_shared::FlowCaseOf<LoadedEdge>;

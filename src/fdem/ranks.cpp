@@ -1,6 +1,5 @@
 #include "fdem/ranks.hpp"
 
-#include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/relations.hpp"
 #include "fdem_shared/fluid/ranks.hpp"
@@ -8,12 +7,10 @@
 
 namespace breccia::fdem {
 
-using fdem_shared::take_items;
-
 void Shape::take_common(World& w, Communicator& ranks) {
   fdem_shared::take_fluid(ranks, *w.given, w.fluid);
   fdem_shared::take_bolts(ranks, *w.given, w.bolts);
-  if (has_gas(w)) take_items(ranks, w.fluid.gas);
+  fdem_shared::take_gas(ranks, w.fluid.gas);
 }
 
 void Shape::derive_part(World& w, Space space) {

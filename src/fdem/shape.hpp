@@ -65,6 +65,7 @@ struct Shape {
   static auto& corners_of(Model& model) {
     return model.triangle;
   }
+  static auto& loaded_sides(World& w) { return w.loaded_edges; }
   static View<const Index> laws(const World& w) { return laws_of(w); }
   static constexpr bool drops_separated = false;  ///< fdem_shared/separated.hpp
   BR_HD static double near(const Mat2& reference) { return near_reach(reference); }

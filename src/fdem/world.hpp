@@ -29,11 +29,7 @@ using fdem_shared::ExposedVertices;
 using fdem_shared::WholeMesh;
 
 /// Where fluid presses on cracks: the same on all ranks.
-struct FluidState : fdem_shared::FluidStateOf<LoadedEdge, CrackSide> {
-  /// Factors of the loads' pressures: of explosives the pressure of the gas  [Pa], else 1; empty:
-  /// there are none.  (sources)
-  Buffer<double> gas;
-};
+using FluidState = fdem_shared::FluidStateOf<LoadedEdge, CrackSide>;
 
 using BoltNode = fdem_shared::BoltNodeOf<Vec2>;
 using BoltState = fdem_shared::BoltStateOf<Vec2, LoadedEdge>;

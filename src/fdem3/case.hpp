@@ -13,9 +13,10 @@
 #include "fdem3/contact/couples.hpp"
 #include "fdem3/elements/loads.hpp"
 #include "fdem3/elements/motion.hpp"
+#include "fdem3/fluid/hole_wall.hpp"
 #include "fdem3/setup/config.hpp"
 #include "fdem_shared/bolts/bolts.hpp"
-#include "fdem_shared/fluid/given.hpp"
+#include "fdem_shared/fluid/gas_source.hpp"
 
 namespace breccia::fdem3 {
 
@@ -47,7 +48,7 @@ struct EffectiveRock {
 };
 
 /// Of a fluid; its ports are edges.
-using FluidSource = fdem_shared::FluidSource;
+using FluidSource = fdem_shared::GasSourceOf<LoadedFace, HoleWall>;
 using Bolt = fdem_shared::BoltOf<Vec3>;
 using FlowCase = fdem_shared::FlowCaseOf<LoadedFace>;
 /// Two faces on each other that nothing joins, by global number.

@@ -9,6 +9,7 @@ namespace breccia::fdem3 {
 
 void Shape::take_common(World& w, Communicator& ranks) {
   fdem_shared::take_fluid(ranks, *w.given, w.fluid);
+  fdem_shared::take_gas(ranks, w.fluid.gas);
   fdem_shared::take_bolts(ranks, *w.given, w.bolts);
 }
 

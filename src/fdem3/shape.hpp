@@ -59,6 +59,7 @@ struct Shape {
   static auto& corners_of(Model& model) {
     return model.tetrahedron;
   }
+  static auto& loaded_sides(World& w) { return w.loaded_faces; }
   static View<const Index> laws(const World& w) { return laws_of(w); }
   static constexpr bool drops_separated = true;  ///< fdem_shared/separated.hpp
   BR_HD static double near(const ShapeGradients& reference) { return near_reach(reference); }

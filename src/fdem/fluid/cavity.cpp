@@ -8,22 +8,6 @@
 #include "fdem/shape.hpp"
 
 namespace breccia::fdem {
-namespace {
-
-/// Area of a polygon that runs clockwise, as the border of a hole does; where edges have parted, it
-/// runs straight from one to the next.  [m2]
-double area_within(const std::vector<EdgeNow>& edges, const std::vector<Index>& hole) {
-  const Vec2 origin = side_in(edges, hole.front()).at[0];
-  double twice = 0.0;
-  for (std::size_t i = 0; i < hole.size(); ++i) {
-    const EdgeNow& e = side_in(edges, hole[i]);
-    const Vec2 next = side_in(edges, hole[(i + 1) % hole.size()]).at[0];
-    twice -= cross(e.at[0] - origin, e.at[1] - origin) + cross(e.at[1] - origin, next - origin);
-  }
-  return 0.5 * twice;
-}
-
-}  // namespace
 
 std::vector<std::vector<Index>> holes_along(const Model& model, const std::vector<Index>& edges,
                                             const std::string& where) {
@@ -61,35 +45,15 @@ std::vector<std::vector<Index>> holes_along(const Model& model, const std::vecto
   return holes;
 }
 
-double gas_volume(World& part, const FluidSource& source) {
-  std::vector<Index> wanted;
-  for (const auto& hole : source.holes) wanted.insert(wanted.end(), hole.begin(), hole.end());
-  const std::vector<LoadedEdge>& wet = part.fluid.wet;
-  for (const LoadedEdge& side : wet)
-    if (side.load == source.load) wanted.push_back(side.number());
-  const std::vector<EdgeNow> edges = fdem_shared::sides_now(part, wanted);
-  double volume = 0.0;
-  for (const auto& hole : source.holes) volume += area_within(edges, hole);
-  for (std::size_t i = 0; i + 1 < wet.size(); i += 2) {
-    if (wet[i].load != source.load) continue;
-    const OpenLine now =
-        opened({}, side_in(edges, wet[i].number()), side_in(edges, wet[i + 1].number()));
-    volume += wet[i].share * now.length * std::max(now.opening, 0.0);
+double volume_within(const std::vector<Index>& hole, const std::vector<EdgeNow>& edges) {
+  const Vec2 origin = side_in(edges, hole.front()).at[0];
+  double twice = 0.0;
+  for (std::size_t i = 0; i < hole.size(); ++i) {
+    const EdgeNow& e = side_in(edges, hole[i]);
+    const Vec2 next = side_in(edges, hole[(i + 1) % hole.size()]).at[0];
+    twice -= cross(e.at[0] - origin, e.at[1] - origin) + cross(e.at[1] - origin, next - origin);
   }
-  return volume;
-}
-
-void expand_gas(World& part) {
-  const std::vector<FluidSource>& sources = part.given->fluids;
-  if (part.fluid.gas.size() == 0)
-    part.fluid.gas = Buffer<double>(Space::host, static_cast<Index>(sources.size()));
-  for (std::size_t k = 0; k < sources.size(); ++k) {
-    const FluidSource& source = sources[k];
-    part.fluid.gas.data()[k] =
-        source.holes.empty()
-            ? 1.0
-            : source.law.pressure(std::max(gas_volume(part, source) / source.charge, 1e-3));
-  }
+  return 0.5 * twice;
 }
 
 }  // namespace breccia::fdem

@@ -1,10 +1,10 @@
 #pragma once
-// Gas of explosives in holes: how large holes are now, and what presses in them.
+// Holes in triangles that gas fills: how large they are now.
 
 #include <vector>
 
+#include "fdem/fluid/fluid.hpp"
 #include "fdem/setup/model.hpp"
-#include "fdem/world.hpp"
 
 namespace breccia::fdem {
 
@@ -14,18 +14,8 @@ namespace breccia::fdem {
 std::vector<std::vector<Index>> holes_along(const Model& model, const std::vector<Index>& edges,
                                             const std::string& where);
 
-/// Volume per thickness of the holes of a source now, and of the cracks that its gas has filled.
-/// All ranks call it.  [m2]
-double gas_volume(World& part, const FluidSource& source);
-
-/// Pressures of gas by its volume now. All ranks call it.
-void expand_gas(World& part);
-
-/// Whether a case has explosives.
-inline bool has_gas(const World& w) {
-  for (const FluidSource& source : w.given->fluids)
-    if (!source.holes.empty()) return true;
-  return false;
-}
+/// Area of a hole now: of a polygon that runs clockwise, as its border does; where edges have
+/// parted, it runs straight from one to the next.  [m2]
+double volume_within(const std::vector<Index>& hole, const std::vector<EdgeNow>& edges);
 
 }  // namespace breccia::fdem

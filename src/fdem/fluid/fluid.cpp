@@ -1,7 +1,7 @@
 #include "fdem/fluid/fluid.hpp"
 
 #include "fdem/fluid/cavity.hpp"
-#include "fdem_shared/fluid/fluid.hpp"
+#include "fdem_shared/fluid/gas.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -21,29 +21,6 @@ struct TellCrack {
                 broke_at[j]};
   }
 };
-
-/// Of gas: lets cracks bear its pressure, and adds the walls of its holes.
-void list_gas(const World& w, std::vector<LoadedEdge>& all) {
-  const std::vector<FluidSource>& sources = w.given->fluids;
-  for (std::size_t k = 0; k < sources.size() && w.fluid.gas.size() > 0; ++k) {
-    if (sources[k].holes.empty()) continue;
-    const double pressure = w.fluid.gas.data()[k];
-    for (LoadedEdge& edge : all)
-      if (edge.load == sources[k].load) edge.share *= pressure;
-    for (LoadedEdge edge : sources[k].borders) {
-      edge.share = pressure;
-      all.push_back(edge);
-    }
-  }
-}
-
-/// @param expands  whether gas takes the pressure of its volume now, or keeps that which it has
-void spread(World& part, double now, bool expands) {
-  const bool changes = fdem_shared::spread_until(part, now), gas = has_gas(part);
-  if (!changes && !gas) return;
-  if (gas && expands) expand_gas(part);
-  list_loaded(part);
-}
 
 }  // namespace
 
@@ -82,23 +59,22 @@ void flow_on(World& part) {
 void spread_fluid(World& part) {
   if (part.given->flow.on) return;  // it flows in each step
   const StageTime timed(part.exec, "fluid");
-  spread(part, part.time, true);
+  fdem_shared::spread_with_gas(part, part.time, true);
 }
 void restore_fluid(World& part) {
   if (part.fluid.time < 0.0) return;
   if (part.given->flow.on)
     fdem_shared::flow_until(part, part.fluid.time);
   else
-    spread(part, part.fluid.time, false);
+    fdem_shared::spread_with_gas(part, part.fluid.time, false);
 }
 
 void list_loaded(World& w) {
-  std::vector<LoadedEdge> all = w.given->loaded;
-  all.insert(all.end(), w.fluid.wet.begin(), w.fluid.wet.end());
-  all.insert(all.end(), w.fluid.border.begin(), w.fluid.border.end());
-  list_gas(w, all);
-  all.insert(all.end(), w.bolts.pull.begin(), w.bolts.pull.end());
-  fdem_shared::list_here(w, all, w.loaded_edges, w.load_starts);
+  fdem_shared::list_all_loaded(w);
+}
+
+double gas_volume(World& part, const FluidSource& source) {
+  return fdem_shared::volume_of_gas(part, source);
 }
 
 fdem_shared::FilledPart filled_part(const World& whole, std::size_t load) {

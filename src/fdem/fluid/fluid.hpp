@@ -36,6 +36,10 @@ void flow_on(World& part);
 /// Lists the loaded edges that are here, those that fluid presses on, too.
 void list_loaded(World& w);
 
+/// Volume per thickness of the holes of a source now, and of the cracks that its gas has filled.
+/// All ranks call it.  [m2]
+double gas_volume(World& part, const FluidSource& source);
+
 /// Length that a fluid has filled, and the volume of it, per unit thickness, of the whole mesh.
 /// @param load  index into Config::loads
 fdem_shared::FilledPart filled_part(const World& whole, std::size_t load);

@@ -9,6 +9,7 @@
 #include "fdem/setup/body_config.hpp"
 #include "fdem_shared/setup/bolt_config.hpp"
 #include "fdem_shared/setup/config.hpp"
+#include "fdem_shared/setup/explosive_config.hpp"
 
 namespace breccia::fdem {
 
@@ -176,34 +177,7 @@ struct RegionConfig {
 
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec2>;
 
-/// [load.explosive]: the gas of an explosive, by the equation of Jones, Wilkins and Lee
-struct ExplosiveConfig {
-  double a = 0.0, b = 0.0;                 ///<  [Pa]
-  double r1 = 4.0, r2 = 1.0, omega = 0.3;  ///<  [-]
-  double energy = 0.0;                     ///< E_0; 0: there is none  [J/m3]
-  double charge = 0.0;                     ///< 0: it fills its holes  [m2]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("a", a, "Pa", Range{0.0, 1e15},
-        "A of p = A exp(-R1 V) + B exp(-R2 V) + C/V^(1 + omega), V the volume of the gas over that "
-        "of the explosive");
-    key.required("a");
-    key("b", b, "Pa", Range{0.0, 1e15}, "B of it");
-    key.required("b");
-    key("r1", r1, "-", Range{0.1, 100.0}, "R1 of it");
-    key.required("r1");
-    key("r2", r2, "-", Range{0.01, 100.0}, "R2 of it");
-    key.required("r2");
-    key("omega", omega, "-", Range{0.01, 10.0}, "omega of it");
-    key.required("omega");
-    key("energy", energy, "J/m3", Range{0.0, 1e15, Open::low},
-        "E_0, energy per volume of explosive, from which C follows");
-    key.required("energy");
-    key("charge", charge, "m2", not_negative,
-        "section of the explosive; 0: it fills the holes of its region");
-  }
-};
+using ExplosiveConfig = fdem_shared::ExplosiveConfigOf<Vec2>;
 
 /// [[load]]: forces on free edges
 struct LoadConfig : fdem_shared::FluidLoadConfigOf<RegionConfig, Vec2> {

@@ -6,29 +6,13 @@
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/setup/regions.hpp"
 #include "fdem_shared/setup/bolts.hpp"
+#include "fdem_shared/setup/explosives.hpp"
 #include "fdem_shared/setup/fluids.hpp"
 
 namespace breccia::fdem {
-namespace {
 
-/// Lets the source that was added last be the gas of an explosive.
-void set_up_gas(World& w, const LoadConfig& load, const Model& model,
-                const std::vector<Index>& edges, const std::vector<LoadedEdge>& borders) {
-  FluidSource& source = set_up(w).fluids.back();
-  const ExplosiveConfig& x = load.explosive;
-  source.holes = holes_along(model, edges, "load." + load.name);
-  source.borders = borders;
-  source.law = ExplosiveGas::of(x.a, x.b, x.r1, x.r2, x.omega, x.energy);
-  source.charge = x.charge > 0.0 ? x.charge : gas_volume(w, source);
-}
-
-}  // namespace
-
-void prescribe_loads(World& w, const Config& asked) {
-  Config config = asked;
-  for (LoadConfig& load : config.loads)
-    if (load.is_gas()) load.pressure = 1.0;  // times that of its volume
-  fdem_shared::prescribe_loads_and_flow(w, config);
+void prescribe_loads(World& w, const Config& config) {
+  fdem_shared::prescribe_loads_and_flow(w, fdem_shared::with_gas_of_one(config));
   fdem_shared::prescribe_bolts(w, config);
 }
 
@@ -77,7 +61,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (load.flows())
       set_up(w).flow.borders = borders;
     else
-      set_up_gas(w, load, model, edges, borders);
+      fdem_shared::set_up_gas(w, load, holes_along(model, edges, "load." + load.name), borders);
   }
   if (loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {

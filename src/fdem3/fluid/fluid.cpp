@@ -1,6 +1,7 @@
 #include "fdem3/fluid/fluid.hpp"
 
-#include "fdem_shared/fluid/fluid.hpp"
+#include "fdem3/fluid/cavity.hpp"
+#include "fdem_shared/fluid/gas.hpp"
 
 namespace breccia::fdem3 {
 namespace {
@@ -76,23 +77,23 @@ void flow_on(World& part) {
 void spread_fluid(World& part) {
   if (part.given->flow.on) return;  // it flows in each step
   const StageTime timed(part.exec, "fluid");
-  if (fdem_shared::spread_until(part, part.time)) list_loaded(part);
+  fdem_shared::spread_with_gas(part, part.time, true);
 }
 void restore_fluid(World& part) {
   if (part.fluid.time < 0.0) return;
   if (part.given->flow.on)
     fdem_shared::flow_until(part, part.fluid.time);
-  else if (fdem_shared::spread_until(part, part.fluid.time))
-    list_loaded(part);
+  else
+    fdem_shared::spread_with_gas(part, part.fluid.time, false);
 }
 
 void list_loaded(World& w) {
   if (w.given->loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
-  std::vector<LoadedFace> all = w.given->loaded;
-  all.insert(all.end(), w.fluid.wet.begin(), w.fluid.wet.end());
-  all.insert(all.end(), w.fluid.border.begin(), w.fluid.border.end());
-  all.insert(all.end(), w.bolts.pull.begin(), w.bolts.pull.end());
-  fdem_shared::list_here(w, all, w.loaded_faces, w.load_starts);
+  fdem_shared::list_all_loaded(w);
+}
+
+double gas_volume(World& part, const FluidSource& source) {
+  return fdem_shared::volume_of_gas(part, source);
 }
 
 fdem_shared::FilledPart filled_part(const World& whole, std::size_t load) {

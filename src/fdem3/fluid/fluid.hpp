@@ -32,6 +32,10 @@ void flow_on(World& part);
 /// Lists the loaded faces that are here, those that fluid presses on, too.
 void list_loaded(World& w);
 
+/// Volume of the holes of a source now, and of the cracks that its gas has filled. All ranks
+/// call it.  [m3]
+double gas_volume(World& part, const FluidSource& source);
+
 /// Area that a fluid has filled, and the volume of it, of the whole mesh.
 /// @param load  index into Config::loads
 fdem_shared::FilledPart filled_part(const World& whole, std::size_t load);

@@ -49,8 +49,14 @@ struct RegionConfig {
 
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec3>;
 
+using ExplosiveConfig = fdem_shared::ExplosiveConfigOf<Vec3>;
+
 /// [[load]]: forces on free faces
 struct LoadConfig : fdem_shared::FluidLoadConfigOf<RegionConfig, Vec3> {
+  ExplosiveConfig explosive;
+
+  bool is_gas() const { return explosive.energy > 0.0; }
+
   template <class Visit>
   void each_key(Visit&& key) {
     keys_of_place(key);
@@ -62,6 +68,8 @@ struct LoadConfig : fdem_shared::FluidLoadConfigOf<RegionConfig, Vec3> {
         "connected to the region");
     keys_of_size(key);
     keys_of_fluid(key);
+    key.table("explosive", explosive,
+              "fluid: gas whose pressure follows from its volume; then pressure is left out");
     history.each_key(key);
   }
 };

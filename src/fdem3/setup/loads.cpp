@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "fdem3/fluid/cavity.hpp"
 #include "fdem3/fluid/fluid.hpp"
 #include "fdem3/setup/regions.hpp"
 #include "fdem_shared/setup/bolts.hpp"
+#include "fdem_shared/setup/explosives.hpp"
 #include "fdem_shared/setup/fluids.hpp"
 
 namespace breccia::fdem3 {
@@ -22,7 +24,7 @@ Vec3 area_of(const Model& model, Index face) {
 }  // namespace
 
 void prescribe_loads(World& w, const Config& config) {
-  fdem_shared::prescribe_loads_and_flow(w, config);
+  fdem_shared::prescribe_loads_and_flow(w, fdem_shared::with_gas_of_one(config));
   fdem_shared::prescribe_bolts(w, config);
 }
 
@@ -44,10 +46,10 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (load.flows()) fdem_shared::set_up_flow(w, config, load, model, ports);
     if (is_fluid)
       set_up(w).fluids.push_back(
-          {static_cast<std::int16_t>(l), load.speed, ports(load.region, "load." + load.name)});
-    const std::vector<Index> faces =
-        faces_in(model, load.region, "load." + load.name,
-                 fdem_shared::laid_bare_by(config, load.dug_by, model.groups), !is_fluid);
+          {{static_cast<std::int16_t>(l), load.speed, ports(load.region, "load." + load.name)}});
+    const std::vector<Index> faces = faces_in(
+        model, load.region, "load." + load.name,
+        fdem_shared::laid_bare_by(config, load.dug_by, model.groups), !is_fluid || load.is_gas());
     for (const Index face : faces) {
       const auto t = at(face / 4);
       const auto material = static_cast<std::size_t>(model.material[t]);
@@ -63,10 +65,15 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     }
     for (std::size_t i = first; i < loaded.size(); ++i)
       loaded[i].share = is_fluid ? 1.0 : loaded[i].share / area;
-    if (!load.flows()) continue;
-    set_up(w).flow.borders.assign(loaded.begin() + static_cast<std::ptrdiff_t>(first),
-                                  loaded.end());
+    if (!load.flows() && !load.is_gas()) continue;
+    const std::vector<LoadedFace> borders(loaded.begin() + static_cast<std::ptrdiff_t>(first),
+                                          loaded.end());
     loaded.resize(first);
+    if (load.flows())
+      set_up(w).flow.borders = borders;
+    else
+      fdem_shared::set_up_gas(
+          w, load, holes_along(model, faces, load.explosive.capped, "load." + load.name), borders);
   }
   if (loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedFace& a, const LoadedFace& b) {

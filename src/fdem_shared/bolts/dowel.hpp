@@ -146,6 +146,8 @@ struct Dowel {
     return offset - kept - force / stiffness;
   }
   Vec2 beyond(const Vec2& offset, const Vec2& kept, const Vec2& force) const {
+    const Vec2 elastic = stiffness * (offset - kept);
+    if (norm(elastic) <= strength) return {};
     return offset - kept - (1.0 / stiffness) * force;
   }
   /// Elastic energy.  [J; in 2D J/m]

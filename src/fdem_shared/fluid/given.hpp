@@ -57,6 +57,9 @@ struct FluidStateOf {
   double released = 0.0;  ///< that left so far  [likewise]
   double pressure = 0.0;  ///< at its source  [Pa]
   double extent = 0.0;    ///< of cracks that a fluid that flows fills  [m; in space m2]
+  /// Factors of the sources' pressures: of explosives the pressure of the gas  [Pa], else 1; empty:
+  /// there are none.  (sources)
+  Buffer<double> gas;
 };
 
 /// The part of the cracks that a fluid has filled.

@@ -1,5 +1,5 @@
 #pragma once
-// State of a fluid, and of bolts, that ranks take over from rank 0.
+// State of fluids and bolts that ranks take over from rank 0.
 
 #include "domain/together.hpp"
 #include "exec/buffer.hpp"
@@ -25,6 +25,11 @@ void take_fluid(Communicator& ranks, const Case& given, State& fluid) {
   take_from_first(ranks, fluid.pressure);
   BR_ASSERT(fluid.volume.size() > 0);
   take_items(ranks, fluid.volume);
+}
+
+/// Pressures of gas. @param gas  empty where a case has none
+inline void take_gas(Communicator& ranks, Buffer<double>& gas) {
+  if (gas.size() > 0) take_items(ranks, gas);
 }
 
 template <class Case, class State>

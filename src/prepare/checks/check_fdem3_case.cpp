@@ -11,6 +11,7 @@
 #include "fdem3/setup/materials.hpp"
 #include "fdem3/setup/stages.hpp"
 #include "fdem_shared/setup/bolts.hpp"
+#include "fdem_shared/setup/explosives.hpp"
 #include "fdem_shared/setup/fluid_rules.hpp"
 #include "prepare/checks/check_bodies.hpp"
 
@@ -37,6 +38,7 @@ class TetCaseChecks {
       check_kind("load." + l.name, l.kind, l);
     }
     fdem_shared::check_fluids(config, problems_);
+    fdem_shared::check_gas(config, problems_);
     fdem_shared::add_probe_problems(config, in_solid, 3, problems_);
     for (const std::string& problem : fdem3::bolt_problems(config)) add(problem);
     for (const std::string& problem : fdem3::stage_problems(config)) add(problem);

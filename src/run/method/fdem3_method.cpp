@@ -36,7 +36,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
 
   void add_findings(const World& w, std::vector<Fact>& facts) const {
     add_cracks(w, facts);
-    add_fluids(w, facts, [&](std::size_t k) { return given_pressure(w, k); });
+    add_fluids(w, facts);
     add_bolt_findings(w, facts);
     add_emission(facts, fdem3::emission(w, places));
     std::vector<double> mass;
@@ -86,6 +86,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
     });
     each_stored_bolt(w, visit);
     each_stored_fluid(w, visit);
+    each_stored_gas(w, visit);
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include "exec/error.hpp"
 #include "fdem/emission.hpp"
-#include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
@@ -38,9 +37,7 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
 
   void add_findings(const World& w, std::vector<Fact>& facts) const {
     add_cracks(w, facts);
-    add_fluids(w, facts, [&](std::size_t k) {
-      return w.given->fluids[k].holes.empty() ? given_pressure(w, k) : w.fluid.gas.data()[k];
-    });
+    add_fluids(w, facts);
     add_bolt_findings(w, facts);
     add_emission(facts, events(w));
     add_fragments(fdem::fragments(w).mass, facts);
@@ -97,7 +94,7 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
     });
     each_stored_bolt(w, visit);
     each_stored_fluid(w, visit);
-    if (fdem::has_gas(w)) visit.fields("gas", Loose<double>{"pressure", w.fluid.gas});
+    each_stored_gas(w, visit);
   }
 };
 

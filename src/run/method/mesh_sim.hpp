@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/energy_split.hpp"
+#include "fdem_shared/fluid/gas_source.hpp"
 #include "fdem_shared/shape.hpp"
 #include "run/method/loose_array.hpp"
 #include "run/method/sim_method.hpp"
@@ -100,9 +101,7 @@ struct MeshSim {
                      mass.empty() ? 0.0 : mass.front() / total});  // a stage may have taken all out
   }
 
-  /// @param pressure_of  pressure_of(k): of fluid k, that does not flow  [Pa]
-  template <class Pressure>
-  static void add_fluids(const World& w, std::vector<Fact>& facts, const Pressure& pressure_of) {
+  static void add_fluids(const World& w, std::vector<Fact>& facts) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     for (std::size_t k = 0; k < w.given->fluids.size(); ++k) {
       const auto load = static_cast<std::size_t>(w.given->fluids[k].load);
@@ -112,7 +111,7 @@ struct MeshSim {
       add(path + "volume", filled.volume);
       const bool flows = w.given->flow.on && static_cast<std::size_t>(w.given->flow.load) == load;
       if (!flows) {
-        add(path + "pressure", pressure_of(k));
+        add(path + "pressure", pressure_now(w, k));
         continue;
       }
       add(path + "injected", w.fluid.injected);
@@ -120,8 +119,9 @@ struct MeshSim {
       add(path + "pressure", w.fluid.pressure);
     }
   }
-  /// Of a fluid whose pressure is given.  [Pa]
-  static double given_pressure(const World& w, std::size_t fluid) {
+  /// Of a fluid that does not flow: as given, or that of gas.  [Pa]
+  static double pressure_now(const World& w, std::size_t fluid) {
+    if (!w.given->fluids[fluid].holes.empty()) return w.fluid.gas.data()[fluid];
     const auto load = static_cast<std::size_t>(w.given->fluids[fluid].load);
     return w.given->load_amplitudes[load].at(w.time).x * w.given->loads[load].pressure;
   }
@@ -178,6 +178,10 @@ struct MeshSim {
     if (!w.given->flow.outlet.empty()) visit("fluid.released", w.fluid.released);
     visit("fluid.pressure", w.fluid.pressure);
     visit.fields("fluid", Loose<double>{"volume", w.fluid.volume});
+  }
+  template <class Visit>
+  static void each_stored_gas(World& w, const Visit& visit) {
+    if (fdem_shared::has_gas(w)) visit.fields("gas", Loose<double>{"pressure", w.fluid.gas});
   }
   /// @param joint_forces  joint_forces(visit): forces of joints, in the precision of the run
   template <class Visit, class JointForces>

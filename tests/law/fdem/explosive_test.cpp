@@ -1,6 +1,6 @@
 // The gas of an explosive: what it sets free, and at which pressure.
 
-#include "fdem/laws/explosive.hpp"
+#include "fdem_shared/laws/explosive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace explosive_test {
 
 // ANFO of 0.931 g/cm3 (Dobratz and Crawford 1985, UCRL-52997).
 constexpr double a = 49.46e9, b = 1.891e9, r1 = 3.907, r2 = 1.118, omega = 0.333, energy = 2.484e9;
-const ExplosiveGas gas = ExplosiveGas::of(a, b, r1, r2, omega, energy);
+const fdem_shared::ExplosiveGas gas = fdem_shared::ExplosiveGas::of(a, b, r1, r2, omega, energy);
 
 /// p = A (1 - omega/(R_1 V)) e^(-R_1 V) + B (1 - omega/(R_2 V)) e^(-R_2 V) + omega E/V with the
 /// energy that is left: the equation of state, at every volume of the expansion.

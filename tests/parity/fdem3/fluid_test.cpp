@@ -1,6 +1,8 @@
 // Fluid in cracks of tetrahedra: threads, a device's schedule, ranks and resumed runs agree, and
 // the ledger books its work.
 
+#include <map>
+
 #include "parity/staged_runs.hpp"
 #include "physics/fdem3/scene.hpp"
 
@@ -54,6 +56,58 @@ fdem3::testing::Scene flooded(const char* joints, double speed) {
   s.config.stages = {fill, more};
   return s;
 }
+/// A cube with a cube in its middle left out, which an explosive breaks.
+fdem3::testing::Scene blasted() {
+  fdem3::testing::Scene s;
+  fdem3::MaterialConfig& rock = s.material(30e9, 0.2, 2500.0);
+  rock.joints = "intrinsic";
+  rock.joint.tension = 4e6;
+  rock.joint.cohesion = 20e6;
+  rock.joint.energy_open = 20.0;
+  rock.friction = 0.5;
+  const prepare::TetMesh whole = prepare::kuhn_box({}, {0.04, 0.04, 0.04}, 0.01);
+  prepare::TetMesh pierced;
+  std::map<Index, Index> number;
+  for (const prepare::Tetrahedron& t : whole.tetrahedron) {
+    Vec3 middle{};
+    for (const Index v : t) middle += 0.25 * whole.point[at(v)];
+    if (std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}) < 0.01) continue;
+    prepare::Tetrahedron corners{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto [found, is_new] = number.emplace(t[k], static_cast<Index>(pierced.point.size()));
+      if (is_new) pierced.point.push_back(whole.point[at(t[k])]);
+      corners[k] = found->second;
+    }
+    pierced.tetrahedron.push_back(corners);
+  }
+  s.body("rock", pierced);
+  fdem3::LoadConfig& anfo =
+      s.load("anfo", "fluid", {-0.011, -0.011, -0.011}, {0.011, 0.011, 0.011});
+  anfo.explosive = {49.46e9, 1.891e9, 3.907, 1.118, 0.333, 2.484e9, 1.6e-6, false};
+  s.config.time.end = 1.0;
+  s.config.time.max_step = 5e-8;
+  fdem3::StageConfig first, second;
+  first.name = "first";
+  first.until = 1e-5;
+  second.name = "second";
+  second.until = 5e-6;
+  s.config.stages = {first, second};
+  return s;
+}
+TEST(Fluid3, of_an_explosive_is_alike_on_threads_schedule_and_ranks) {
+  const fdem3::testing::Scene s = blasted();
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  for (const Fact& fact : method->facts())
+    if (fact.path == "fluid.anfo.area") {
+      EXPECT_GT(fact.value, 0.0);  // it has entered cracks
+    }
+  expect_alike(s);
+}
+TEST(Fluid3, of_an_explosive_is_resumed) {
+  expect_resumed(blasted());
+}
+
 /// The water flows: into the crack at a given pressure, then at a given rate.
 fdem3::testing::Scene flowing(const char* joints) {
   fdem3::testing::Scene s = flooded(joints, 0.0);

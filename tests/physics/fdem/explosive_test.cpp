@@ -1,6 +1,6 @@
 // Gas of an explosive in a hole: its pressure follows from how far the hole has grown.
 
-#include "fdem/laws/explosive.hpp"
+#include "fdem_shared/laws/explosive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,8 @@ void run_to(World& w, double time) {
 double hole_at_start() {
   return 0.5 * 48.0 * inner * inner * std::sin(2.0 * pi / 48.0);
 }
-const ExplosiveGas gas = ExplosiveGas::of(49.46e9, 1.891e9, 3.907, 1.118, 0.333, 2.484e9);
+const fdem_shared::ExplosiveGas gas =
+    fdem_shared::ExplosiveGas::of(49.46e9, 1.891e9, 3.907, 1.118, 0.333, 2.484e9);
 
 TEST(Explosive, that_fills_its_hole_begins_with_the_pressure_of_the_volume_one) {
   const World w = charged(0.0, 50e9).world();

@@ -3,7 +3,7 @@
 
 #include "math/elementary.hpp"
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 
 /// Adiabatic expansion of the products by the equation of Jones, Wilkins and Lee (Lee, Hornig and
 /// Kury 1968, UCRL-50422), V their volume over that of the explosive:
@@ -38,4 +38,4 @@ struct ExplosiveGas {
   }
 };
 
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared
