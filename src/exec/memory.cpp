@@ -2,12 +2,15 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "exec/device.hpp"
+#include "exec/filling.hpp"
 
 #if defined(BR_CUDA)
 #include "exec/cuda.hpp"
@@ -19,6 +22,7 @@ namespace {
 constexpr std::size_t alignment =
     64;  // one cache line; the size is kept in the line before the array
 std::atomic<std::size_t> alive_bytes{0}, peak_bytes{0};
+thread_local int clearing_threads = 1;
 
 void book(std::size_t bytes) {
   const std::size_t now = alive_bytes += bytes;
@@ -149,7 +153,22 @@ void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) 
     return;
   }
 #endif
-  std::memset(memory, 0, bytes);
+  constexpr std::size_t portion = std::size_t{1} << 22;
+  if (clearing_threads == 1 || bytes < 2 * portion) {
+    std::memset(memory, 0, bytes);
+    return;
+  }
+  const auto parts = static_cast<int>((bytes + portion - 1) / portion);
+  for_each_task(clearing_threads, parts, [=](int part) {
+    const std::size_t first = static_cast<std::size_t>(part) * portion;
+    std::memset(static_cast<std::byte*>(memory) + first, 0, std::min(portion, bytes - first));
+  });
+}
+
+ClearingThreads::ClearingThreads(int threads)
+    : before_(std::exchange(clearing_threads, std::max(threads, 1))) {}
+ClearingThreads::~ClearingThreads() {
+  clearing_threads = before_;
 }
 
 #if defined(BR_CUDA)

@@ -155,6 +155,7 @@ class TetBodyInModel {
  public:
   TetBodyInModel(Model& model, const Config& config, std::size_t number)
       : model_(model), config_(config), body_(config.bodies[number]), number_(number) {
+    if (body_.grains.kind.empty() && body_.weibull.modulus <= 0.0) return;  // none is asked for
     for (std::size_t t = 0; t < model.tetrahedron.size(); ++t) {
       if (static_cast<std::size_t>(model.group[t]) != number) continue;
       tetrahedra_.push_back(t);

@@ -26,6 +26,7 @@ double least_height(const Vec3 (&x)[4]) {
 std::optional<std::string> flat_tetrahedron(const Model& model) {
   constexpr double much = 0.1;  // of the median
   std::vector<double> heights;
+  heights.reserve(model.tetrahedron.size());
   for (const auto& corners : model.tetrahedron) {
     Vec3 x[4];
     for (std::size_t k = 0; k < 4; ++k) x[k] = model.point[static_cast<std::size_t>(corners[k])];

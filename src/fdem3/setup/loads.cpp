@@ -48,7 +48,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
       set_up(w).fluids.push_back(
           {{static_cast<std::int16_t>(l), load.speed, ports(load.region, "load." + load.name)}});
     const std::vector<Index> faces = faces_in(
-        model, load.region, "load." + load.name,
+        model, w.across, load.region, "load." + load.name,
         fdem_shared::laid_bare_by(config, load.dug_by, model.groups), !is_fluid || load.is_gas());
     for (const Index face : faces) {
       const auto t = at(face / 4);

@@ -1,44 +1,64 @@
 #include "fdem3/setup/mesh_faces.hpp"
 
-#include <algorithm>
-#include <tuple>
-
 #include "exec/error.hpp"
-#include "fdem3/elements/tetrahedra.hpp"
+#include "exec/tasks.hpp"
 
 namespace breccia::fdem3 {
+namespace {
 
-std::vector<MeshFace> mesh_faces(const Model& model) {
-  std::vector<MeshFace> sides;
-  sides.reserve(4 * model.tetrahedron.size());
-  for (std::size_t t = 0; t < model.tetrahedron.size(); ++t)
-    for (int k = 0; k < 4; ++k) {
-      MeshFace side{{}, static_cast<Index>(4 * t) + k, -1};
-      for (int i = 0; i < 3; ++i)
-        side.corners[static_cast<std::size_t>(i)] =
-            model.tetrahedron[t][static_cast<std::size_t>(corner_of_face(k, i))];
-      std::sort(side.corners.begin(), side.corners.end());
-      sides.push_back(side);
+/// A side of those whose lowest vertex is the same.
+struct Side {
+  Index middle, high;  ///< its other vertices
+  Index number;
+  bool same_face(const Side& other) const { return middle == other.middle && high == other.high; }
+};
+
+[[noreturn]] void refuse_third(Index a, Index b, Index c) {
+  throw InputError("tetrahedra " + std::to_string(a / 4) + ", " + std::to_string(b / 4) + " and " +
+                   std::to_string(c / 4) + " share one face");
+}
+
+}  // namespace
+
+/// Sides are put together by their lowest vertices: a few each, which are sorted by themselves.
+std::vector<Index> sides_across(const Model& model, int threads) {
+  const auto sides = static_cast<Index>(4 * model.tetrahedron.size());
+  const auto vertices = static_cast<Index>(model.point.size());
+  std::vector<Index> end(model.point.size() + 1, 0);  // of each vertex' sides
+  for (Index s = 0; s < sides; ++s) ++end[at(vertices_of(model, s)[0]) + 1];
+  for (std::size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
+  std::vector<Index> listed(at(sides));
+  for (Index s = 0; s < sides; ++s) listed[at(end[at(vertices_of(model, s)[0])]++)] = s;
+
+  std::vector<Index> across(at(sides), -1);
+  const auto pair_up = [&](std::vector<Side>& around) {
+    std::sort(around.begin(), around.end(), [](const Side& p, const Side& q) {
+      return p.middle != q.middle ? p.middle < q.middle
+             : p.high != q.high   ? p.high < q.high
+                                  : p.number < q.number;
+    });
+    for (std::size_t k = 1; k < around.size(); ++k) {
+      const Side &one = around[k - 1], &other = around[k];
+      if (!one.same_face(other)) continue;
+      if (across[at(one.number)] >= 0)
+        refuse_third(across[at(one.number)], one.number, other.number);
+      across[at(one.number)] = other.number;
+      across[at(other.number)] = one.number;
     }
-  std::sort(sides.begin(), sides.end(), [](const MeshFace& p, const MeshFace& q) {
-    return std::tie(p.corners, p.a) < std::tie(q.corners, q.a);
+  };
+  constexpr Index portion = 4096;
+  for_each_task(threads, (vertices + portion - 1) / portion, [&](int part) {
+    std::vector<Side> around;
+    for (Index v = part * portion; v < std::min(vertices, (part + 1) * portion); ++v) {
+      around.clear();
+      for (Index k = v > 0 ? end[at(v - 1)] : 0; k < end[at(v)]; ++k) {
+        const auto corners = vertices_of(model, listed[at(k)]);
+        around.push_back({corners[1], corners[2], listed[at(k)]});
+      }
+      pair_up(around);
+    }
   });
-  std::vector<MeshFace> faces;
-  faces.reserve(sides.size() / 2);
-  for (const MeshFace& side : sides) {
-    if (faces.empty() || faces.back().corners != side.corners) {
-      faces.push_back(side);
-    } else if (faces.back().b < 0) {
-      faces.back().b = side.a;
-    } else {
-      throw InputError("tetrahedra " + std::to_string(faces.back().a / 4) + ", " +
-                       std::to_string(faces.back().b / 4) + " and " + std::to_string(side.a / 4) +
-                       " share one face");
-    }
-  }
-  std::sort(faces.begin(), faces.end(),
-            [](const MeshFace& p, const MeshFace& q) { return p.a < q.a; });
-  return faces;
+  return across;
 }
 
 }  // namespace breccia::fdem3

@@ -11,16 +11,16 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& config,
   return fdem_shared::corners_within<Shape>(model, config, where);
 }
 
-std::vector<Index> faces_in(const Model& model, const RegionConfig& config,
-                            const std::string& where, const fdem_shared::LaidBare& bare,
-                            bool needed) {
+std::vector<Index> faces_in(const Model& model, const std::vector<Index>& across,
+                            const RegionConfig& config, const std::string& where,
+                            const fdem_shared::LaidBare& bare, bool needed) {
   const fdem_shared::Region<Shape, Model, RegionConfig> region(model, config, where);
   const auto group = [&](Index face) { return at(model.group[at(face / 4)]); };
   std::vector<Index> faces;
-  for (const MeshFace& f : mesh_faces(model)) {
+  each_face(model, across, [&](const MeshFace& f) {
     const Index own = bare.side(f.a, f.b, group);
     if (own >= 0 && region.takes_side(at(own / 4), f.corners)) faces.push_back(own);
-  }
+  });
   if (faces.empty() && needed) throw InputError(bare.none_of(where, "face"));
   return faces;
 }

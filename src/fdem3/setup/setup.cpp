@@ -6,6 +6,7 @@
 
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
+#include "exec/filling.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem3/setup/flatness.hpp"
 #include "fdem3/setup/loads.hpp"
@@ -49,14 +50,14 @@ double volume_of(const Model& model, std::size_t t) {
   return dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6.0;
 }
 
-/// Joints that are being collected.
+/// Joints that are being collected: who is joined, then what is measured of each.
 struct JointList {
   std::vector<Index> face_a, face_b, law;
+  std::vector<JointStage> stage;
   std::vector<std::uint8_t> turn;
   std::vector<FaceShape> shape;
   std::vector<double> length, strength;
   std::vector<Vec3> preset;
-  std::vector<JointStage> stage;
 };
 
 /// The place in a's list of corners of what lies at the first corner of b's.
@@ -100,16 +101,22 @@ class Joining {
       weak_[d.face] = d.material < 0 ? fdem::BondTable::nothing
                                      : table_.of_joint[static_cast<std::size_t>(d.material)];
     set_up(w).open_vertex.assign(model.point.size(), 0);
-    w.across.assign(4 * model.tetrahedron.size(), -1);
-    for (const MeshFace& f : mesh_faces(model)) add(f);
+    const std::size_t joints = w.across.size() / 2;
+    list_.face_a.reserve(joints);
+    list_.face_b.reserve(joints);
+    list_.law.reserve(joints);
+    list_.stage.reserve(joints);
+    each_face(model, w.across, [this](const MeshFace& f) { add(f); });
+    measure();
   }
 
   void store() {
     Joints& j = w_.joints;
+    const int threads = w_.exec.threads;
     const auto count = static_cast<Index>(list_.face_a.size());
     copy_to(set_up(w_).bonds, table_.bonds);
-    copy_to(w_.faces, faces_);
     std::vector<std::uint8_t> exposed;
+    exposed.reserve(faces_.size());
     for (const FaceJoints& f : faces_) {
       unsigned bits = 0;
       for (unsigned k = 0; k < 4; ++k)
@@ -117,15 +124,19 @@ class Joining {
       exposed.push_back(static_cast<std::uint8_t>(bits));
     }
     copy_to(w_.tetrahedra.exposed, exposed);
-    copy_to(j.face_a, list_.face_a);
-    copy_to(j.face_b, list_.face_b);
-    copy_to(j.turn, list_.turn);
-    copy_to(j.law, list_.law);
-    copy_to(j.shape, list_.shape);
-    copy_to(j.length, list_.length);
-    copy_to(j.strength, list_.strength);
-    if (w_.given->extrinsic || config_.in_situ.any()) copy_to(j.preset, list_.preset);
-    copy_to(j.stage, list_.stage);
+    hand_over(w_.faces, faces_, threads);
+    hand_over(j.face_a, list_.face_a, threads);
+    hand_over(j.face_b, list_.face_b, threads);
+    hand_over(j.turn, list_.turn, threads);
+    hand_over(j.law, list_.law, threads);
+    hand_over(j.shape, list_.shape, threads);
+    hand_over(j.length, list_.length, threads);
+    hand_over(j.strength, list_.strength, threads);
+    if (config_.in_situ.any())
+      hand_over(j.preset, list_.preset, threads);
+    else if (w_.given->extrinsic)
+      j.preset.resize(count);
+    hand_over(j.stage, list_.stage, threads);
     j.force.resize(count);
     begin_joints(j, count);
     if (w_.given->extrinsic) {
@@ -139,8 +150,6 @@ class Joining {
  private:
   void add(const MeshFace& f) {
     if (f.b < 0) return open(f, 1);
-    w_.across[at(f.a)] = f.b;
-    w_.across[at(f.b)] = f.a;
     const auto a = at(f.a / 4), b = at(f.b / 4);
     const auto weak = weak_.find(f.corners);
     const Index found =
@@ -178,13 +187,43 @@ class Joining {
     for (const Index vertex : f.corners) set_up(w_).open_vertex[at(vertex)] |= bits;
   }
   void join(const MeshFace& f, Index law) {
-    const auto a = at(f.a / 4), b = at(f.b / 4);
     const auto joint = static_cast<Index>(list_.face_a.size());
     slot(f.a) = 2 * joint;
     slot(f.b) = 2 * joint + 1;
+    const bool dormant = is_within(f.corners) && sleeps(f.a) && sleeps(f.b);
+    if (dormant) {
+      for (const Index vertex : f.corners) tied_[at(vertex)] = 1;
+      set_up(w_).extrinsic = true;
+    }
+    list_.face_a.push_back(f.a);
+    list_.face_b.push_back(f.b);
+    list_.law.push_back(law);
+    list_.stage.push_back(dormant ? JointStage::dormant : JointStage::whole);
+  }
+  bool sleeps(Index face) const {
+    return table_.dormant[static_cast<std::size_t>(model_.material[at(face / 4)])];
+  }
+  /// No discontinuity, which is there from the start.
+  bool is_within(const std::array<Index, 3>& corners) const { return !weak_.contains(corners); }
+
+  /// What joints are at the start, by their faces.
+  void measure() {
+    const std::size_t count = list_.face_a.size();
+    list_.turn.resize(count);
+    list_.shape.resize(count);
+    list_.length.resize(count);
+    list_.strength.resize(count);
+    if (config_.in_situ.any()) list_.preset.resize(count);
+    each_portion(w_.exec.threads, static_cast<Index>(count), [this](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) measure(at(i));
+    });
+  }
+  void measure(std::size_t i) {
+    const Index face_a = list_.face_a[i], face_b = list_.face_b[i];
+    const auto a = at(face_a / 4), b = at(face_b / 4);
     Vec3 corner[3];
     for (int k = 0; k < 3; ++k)
-      corner[k] = model_.point[at(model_.tetrahedron[b][at(corner_of_face(f.b % 4, k))])];
+      corner[k] = model_.point[at(model_.tetrahedron[b][at(corner_of_face(face_b % 4, k))])];
     const FaceShape shape = FaceShape::of(corner[0], corner[1], corner[2]);
     const double h = (volume_of(model_, a) + volume_of(model_, b)) / shape.area();
     const Vec3 across = cross(corner[1] - corner[0], corner[2] - corner[0]);
@@ -192,28 +231,17 @@ class Joining {
       return config_.materials[static_cast<std::size_t>(model_.material[t])].bedding.share(
           (1.0 / norm(across)) * across);
     };
-    const bool within = !weak_.contains(f.corners);  // a discontinuity is there from the start
+    const bool within = is_within(vertices_of(model_, face_a));
     const double planes = within ? std::min(bedded(a), bedded(b)) : 1.0;
-    const bool dormant = within && table_.dormant[static_cast<std::size_t>(model_.material[a])] &&
-                         table_.dormant[static_cast<std::size_t>(model_.material[b])];
-    if (dormant) {
-      for (const Index vertex : f.corners) tied_[at(vertex)] = 1;
-      set_up(w_).extrinsic = true;
-    }
     const double strength = planes * std::min(static_cast<double>(model_.strength[a]),
                                               static_cast<double>(model_.strength[b]));
-    list_.face_a.push_back(f.a);
-    list_.face_b.push_back(f.b);
-    list_.turn.push_back(turn_between(model_, f.a, f.b));
-    list_.law.push_back(law);
-    list_.shape.push_back(shape);
-    list_.length.push_back(h);
-    list_.strength.push_back(strength);
-    list_.stage.push_back(dormant ? JointStage::dormant : JointStage::whole);
-    list_.preset.push_back(!dormant && config_.in_situ.any()
-                               ? preset_of(config_, table_.bonds[static_cast<std::size_t>(law)],
-                                           strength, h, corner, f.a / 4, f.b / 4)
-                               : Vec3{});
+    list_.turn[i] = turn_between(model_, face_a, face_b);
+    list_.shape[i] = shape;
+    list_.length[i] = h;
+    list_.strength[i] = strength;
+    if (config_.in_situ.any() && list_.stage[i] != JointStage::dormant)
+      list_.preset[i] = preset_of(config_, table_.bonds[static_cast<std::size_t>(list_.law[i])],
+                                  strength, h, corner, face_a / 4, face_b / 4);
   }
   Index& slot(Index face) { return faces_[at(face / 4)].at[face % 4]; }
 
@@ -228,10 +256,11 @@ class Joining {
 };
 
 /// h_c of each material: mean of 2 V/A over the faces of its border, or over all of its faces.  [m]
-std::vector<double> contact_lengths(const Config& config, const Model& model) {
+std::vector<double> contact_lengths(const Config& config, const Model& model,
+                                    const std::vector<Index>& sides) {
   const std::size_t n = config.materials.size();
   std::vector<double> at_border(n, 0.0), borders(n, 0.0), any(n, 0.0), count(n, 0.0);
-  for (const MeshFace& f : mesh_faces(model))
+  each_face(model, sides, [&](const MeshFace& f) {
     for (const Index face : {f.a, f.b}) {
       if (face < 0) continue;
       const auto t = at(face / 4);
@@ -246,6 +275,7 @@ std::vector<double> contact_lengths(const Config& config, const Model& model) {
       at_border[m] += h;
       borders[m] += 1.0;
     }
+  });
   std::vector<double> lengths;
   for (std::size_t m = 0; m < n; ++m)
     lengths.push_back(borders[m] > 0.0 ? at_border[m] / borders[m]
@@ -286,6 +316,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   const Config config = with_inertia(asked);
   if (model.size() == 0) throw InputError("the model holds no tetrahedra");
   World w(exec);
+  const ClearingThreads clearing(exec.threads);
   Case& given = set_up(w);
   given.time = config.time;
   given.gravity = config.gravity.value;
@@ -294,7 +325,8 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.shown = config.output.more_fields();
   given.emission = config.emission;
   given.materials = static_cast<Index>(config.materials.size());
-  given.contact_lengths = contact_lengths(config, model);
+  w.across = sides_across(model, exec.threads);
+  given.contact_lengths = contact_lengths(config, model, w.across);
   given.rocks = effective_rocks(config);
   given.bedded = has_bedded_rock(config);
   set_up_middles(w, model);

@@ -2,6 +2,7 @@
 // From a model to a world: elements with corners of their own, bodies, corners that move as one,
 // places at the start.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -10,6 +11,7 @@
 #include "core/case_config.hpp"
 #include "core/gauge.hpp"
 #include "exec/error.hpp"
+#include "exec/filling.hpp"
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/setup/writable.hpp"
 #include "fdem_shared/shape.hpp"
@@ -26,45 +28,72 @@ Config with_inertia(Config config) {
   return config;
 }
 
+/// Elements that follow each other in the mesh, as they are at the start.
+template <class Shape>
+struct ElementsAtStart {
+  std::vector<GlobalId> id;
+  std::vector<Index> material;
+  std::vector<typename Shape::Nodes> nodes;
+  std::vector<typename Shape::Reference> reference;
+  std::vector<double> mass, viscosity, edge;
+
+  explicit ElementsAtStart(Index size)
+      : id(at(size)),
+        material(at(size)),
+        nodes(at(size)),
+        reference(at(size)),
+        mass(at(size)),
+        viscosity(at(size)),
+        edge(at(size)) {}
+};
+
 /// Splits the mesh: each element gets its own corners. @throws InputError where one is inside out
 template <class World, class Config, class Model>
 void set_up_elements(World& w, const Config& config, const Model& model) {
   using Shape = ShapeOf<World>;
+  constexpr Index at_once = Index{1} << 18;
+  const int threads = w.exec.threads;
   const auto& corners = Shape::corners_of(model);
-  std::vector<GlobalId> id(corners.size());
-  std::iota(id.begin(), id.end(), 0);
-  std::vector<typename Shape::Nodes> nodes;
-  std::vector<typename Shape::Reference> reference;
-  std::vector<double> mass, viscosity;
+  const auto count = static_cast<Index>(corners.size());
+  auto& e = Shape::elements(w);
+  const auto hold = [count](auto&... arrays) { (arrays.resize(count), ...); };
+  hold(e.id, e.material, e.nodes, Shape::reference(e), e.mass, e.viscosity, e.force, e.viscous_work,
+       e.damping_work, e.load_work);
+  w.vertex.resize(at(Shape::corners * count));
   double edges = 0.0;
-  for (std::size_t t = 0; t < corners.size(); ++t) {
-    typename Shape::Nodes own;
-    for (std::size_t k = 0; k < corners[t].size(); ++k) {
-      own.at[k] = {model.point[at(corners[t][k])], model.velocity[t]};
-      w.vertex.push_back(corners[t][k]);
-    }
-    const auto& m = config.materials[static_cast<std::size_t>(model.material[t])];
-    const auto start = Shape::at_start(own, m.density, t);
-    nodes.push_back(own);
-    reference.push_back(start.reference);
-    mass.push_back(start.mass);
-    edges += start.edge;
-    viscosity.push_back(m.damping * 2.0 * start.edge * std::sqrt(m.young * m.density));
+  for (Index first = 0; first < count; first += at_once) {
+    const Index size = std::min(at_once, count - first);
+    ElementsAtStart<Shape> some(size);
+    each_portion(threads, size, [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) {
+        const std::size_t t = at(first + i), own = at(i);
+        for (std::size_t k = 0; k < corners[t].size(); ++k) {
+          some.nodes[own].at[k] = {model.point[at(corners[t][k])], model.velocity[t]};
+          w.vertex[at(Shape::corners) * t + k] = corners[t][k];
+        }
+        const auto& m = config.materials[static_cast<std::size_t>(model.material[t])];
+        const auto start = Shape::at_start(some.nodes[own], m.density, t);
+        some.id[own] = first + i;
+        some.material[own] = model.material[t];
+        some.reference[own] = start.reference;
+        some.mass[own] = start.mass;
+        some.edge[own] = start.edge;
+        some.viscosity[own] = m.damping * 2.0 * start.edge * std::sqrt(m.young * m.density);
+      }
+    });
+    for (const double edge : some.edge) edges += edge;
+    const auto put = [&](auto& to, const auto& items) { put_items(to, first, items, threads); };
+    put(e.id, some.id);
+    put(e.material, some.material);
+    put(e.nodes, some.nodes);
+    put(Shape::reference(e), some.reference);
+    put(e.mass, some.mass);
+    put(e.viscosity, some.viscosity);
   }
   auto& given = set_up(w);
   given.mean_edge = edges / static_cast<double>(corners.size());
   given.skin = config.search.margin * given.mean_edge;
-  auto& e = Shape::elements(w);
-  copy_to(e.id, id);
   copy_to(e.group, model.group);
-  copy_to(e.material, std::vector<Index>(model.material.begin(), model.material.end()));
-  copy_to(e.nodes, nodes);
-  copy_to(Shape::reference(e), reference);
-  copy_to(e.mass, mass);
-  copy_to(e.viscosity, viscosity);
-  for (Buffer<double>* work : {&e.viscous_work, &e.damping_work, &e.load_work})
-    work->resize(model.size());
-  e.force.resize(model.size());
 }
 
 /// Materials and middles of elements, for their laws where the stress in situ has a slope.
@@ -115,6 +144,9 @@ void set_up_bodies(World& w, const Model& model) {
   auto& given = set_up(w);
   given.groups = model.groups;
   for (const std::string& group : model.groups) given.sets.push_back({group, {}});
+  std::vector<std::size_t> sizes(model.groups.size(), 0);
+  for (const auto group : model.group) sizes[static_cast<std::size_t>(group)] += at(corners);
+  for (std::size_t g = 0; g < sizes.size(); ++g) given.sets[g].nodes.reserve(sizes[g]);
   for (Index t = 0; t < model.size(); ++t)
     for (Index k = 0; k < corners; ++k)
       given.sets[static_cast<std::size_t>(model.group[at(t)])].nodes.push_back(corners * t + k);
@@ -125,6 +157,7 @@ void set_up_bodies(World& w, const Model& model) {
 template <class World>
 void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
   using Shape = ShapeOf<World>;
+  if (std::none_of(tied.begin(), tied.end(), [](std::uint8_t is) { return is != 0; })) return;
   std::vector<std::vector<Index>> corners(tied.size());
   for (Index n = 0; n < Shape::corners * Shape::elements(w).size(); ++n)
     if (tied[at(w.vertex[at(n)])] != 0) corners[at(w.vertex[at(n)])].push_back(n);
@@ -160,22 +193,23 @@ template <class World, class Config, class Model>
 void set_up_starts(World& w, const Config& config, const Model& model) {
   using Shape = ShapeOf<World>;
   auto& given = set_up(w);
-  std::vector<typename Shape::Vector> starts;
-  for (const auto& corners : Shape::corners_of(model))
-    for (const Index vertex : corners) starts.push_back(model.point[at(vertex)]);
+  const auto& of_elements = Shape::corners_of(model);
+  const auto start_of = [&](Index n) {
+    return model.point[at(of_elements[at(n / Shape::corners)][at(n % Shape::corners)])];
+  };
   bool any = given.shown.displacement;
   for (const ProbeConfig& p : config.probes) {
     const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
     any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
     if (kind != Quantity::Kind::strain) continue;
-    std::vector<Index> corners(starts.size());
+    std::vector<Index> corners(at(Shape::corners) * of_elements.size());
     std::iota(corners.begin(), corners.end(), 0);
     for (const auto& set : given.sets)
       if (set.name == p.on) corners = set.nodes;
     const ReadBox box(p.min, p.max);
     std::vector<Vec3> points;
     for (const Index n : corners)
-      if (const Vec3 x = to_space(starts[at(n)]); box.holds(x)) points.push_back(x);
+      if (const Vec3 x = to_space(start_of(n)); box.holds(x)) points.push_back(x);
     bool fits = false;
     given.strain_fits.push_back({p.name, strain_fit(points, Shape::dimension, fits)});
     if (!fits)
@@ -183,7 +217,12 @@ void set_up_starts(World& w, const Config& config, const Model& model) {
                        (Shape::dimension == 2 ? "on a line" : "in a plane") +
                        "; its region holds " + std::to_string(points.size()));
   }
-  if (any) copy_to(given.starts, starts);
+  if (!any) return;
+  std::vector<typename Shape::Vector> starts;
+  starts.reserve(at(Shape::corners) * of_elements.size());
+  for (const auto& corners : of_elements)
+    for (const Index vertex : corners) starts.push_back(model.point[at(vertex)]);
+  copy_to(given.starts, starts);
 }
 
 /// No machine takes more steps than this, and time, a sum of them, would stop.

@@ -1,7 +1,9 @@
 #pragma once
 // Supports: corners whose motion is prescribed.
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "exec/error.hpp"
 #include "fdem_shared/setup/over_time.hpp"
@@ -23,20 +25,32 @@ std::size_t corners_of_bodies(const World& w, const Config& config) {
 template <class World, class Hold>
 void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Index>& hold) {
   using Shape = ShapeOf<World>;
-  std::vector<typename Shape::Nodes> nodes;
-  copy_to(nodes, Shape::elements(w).nodes);
-  for (std::size_t t = 0; t < hold.size(); ++t) {
-    if (hold[t] < 0) continue;
-    const Hold& h = holds[at(hold[t])];
+  const auto start = [&](const Hold& h, typename Shape::Nodes& nodes) {
     for (int k = 0; k < Shape::corners; ++k) {
-      auto& velocity = nodes[t].at[k].velocity;
+      auto& velocity = nodes.at[k].velocity;
       const auto given = h.motion[k] >= 0 ? w.prescribed[at(h.motion[k])].now(0.0, 0.0).at(
-                                                nodes[t].at[k].position, 0.0)
+                                                nodes.at[k].position, 0.0)
                                           : typename Shape::Vector{};
       velocity = held_parts(h.fixed >> (Shape::dimension * k), given, velocity);
     }
+  };
+  // A few at once go to the host and back, if one of them is held.
+  constexpr std::size_t at_once = 1024;
+  Buffer<typename Shape::Nodes>& all = Shape::elements(w).nodes;
+  std::vector<typename Shape::Nodes> some;
+  for (std::size_t first = 0; first < hold.size(); first += at_once) {
+    const std::size_t end = std::min(hold.size(), first + at_once);
+    const auto is_held = [](Index place) { return place >= 0; };
+    if (std::none_of(hold.begin() + static_cast<std::ptrdiff_t>(first),
+                     hold.begin() + static_cast<std::ptrdiff_t>(end), is_held))
+      continue;
+    some.resize(end - first);
+    const std::size_t bytes = some.size() * sizeof some[0];
+    copy_bytes(some.data(), Space::host, all.data() + first, all.space(), bytes);
+    for (std::size_t t = first; t < end; ++t)
+      if (is_held(hold[t])) start(holds[at(hold[t])], some[t - first]);
+    copy_bytes(all.data() + first, all.space(), some.data(), Space::host, bytes);
   }
-  copy_to(Shape::elements(w).nodes, nodes);
 }
 
 /// A support holds a corner.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "exec/error.hpp"
 
@@ -19,6 +20,26 @@ struct FaceSide {
   bool even;  ///< the tetrahedron's own order of the corners is an even permutation of them
 };
 
+/// Sorts items, those of each lowest vertex by themselves.
+/// @param lowest  vertex of an item  @param before  compares their lowest vertices first
+template <class Item, class Lowest, class Before>
+void sort_by_vertices(std::vector<Item>& items, const Lowest& lowest, const Before& before) {
+  Index most = -1;
+  for (const Item& item : items) most = std::max(most, lowest(item));
+  std::vector<std::size_t> end(at(most + 1) + 1, 0);  // of each vertex' items
+  for (const Item& item : items) ++end[at(lowest(item)) + 1];
+  for (std::size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
+  std::vector<Item> placed(items.size());
+  for (const Item& item : items) placed[end[at(lowest(item))]++] = item;
+  std::size_t begin = 0;
+  for (const std::size_t next : end) {
+    std::sort(placed.begin() + static_cast<std::ptrdiff_t>(begin),
+              placed.begin() + static_cast<std::ptrdiff_t>(next), before);
+    begin = next;
+  }
+  items.swap(placed);
+}
+
 bool is_even(const Face& f) {
   return (f[0] < f[1]) ^ (f[1] < f[2]) ^ (f[0] < f[2]);
 }
@@ -31,9 +52,11 @@ std::vector<FaceSide> face_sides(const std::vector<Tetrahedron>& tetrahedra) {
       const Face face = face_of(tetrahedra[t], k);
       sides.push_back({sorted(face), static_cast<Index>(t), is_even(face)});
     }
-  std::sort(sides.begin(), sides.end(), [](const FaceSide& a, const FaceSide& b) {
-    return a.corners != b.corners ? a.corners < b.corners : a.tetrahedron < b.tetrahedron;
-  });
+  sort_by_vertices(
+      sides, [](const FaceSide& side) { return side.corners[0]; },
+      [](const FaceSide& a, const FaceSide& b) {
+        return a.corners != b.corners ? a.corners < b.corners : a.tetrahedron < b.tetrahedron;
+      });
   return sides;
 }
 
@@ -136,7 +159,8 @@ class TetChecker {
       std::sort(corner.begin(), corner.end());
       all.emplace_back(corner, static_cast<Index>(t));
     }
-    std::sort(all.begin(), all.end());
+    sort_by_vertices(
+        all, [](const auto& one) { return one.first[0]; }, std::less<>());
     for (std::size_t k = 1; k < all.size(); ++k)
       if (all[k].first == all[k - 1].first) {
         kind.add([&] {

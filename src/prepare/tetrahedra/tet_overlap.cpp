@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace breccia::prepare {
 namespace {
@@ -62,10 +64,24 @@ std::vector<std::pair<Cell, Index>> crowded_cells(const std::vector<TetBox>& box
     if (outer[t]) each_cell(boxes[t], edge, [&](const Cell& cell) { cells.push_back(cell); });
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  // Most cells lie inside: a bit for their hash tells so without a look at the list.
+  std::vector<bool> seen(std::size_t{1} << 22);
+  const auto bit = [&seen](const Cell& cell) {
+    std::uint64_t hash = 0;
+    for (const double number : cell) {
+      const double one_zero = number + 0.0;  // not two
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &one_zero, sizeof bits);
+      hash = (hash ^ bits) * 0x9e3779b97f4a7c15U;
+      hash ^= hash >> 32;
+    }
+    return static_cast<std::size_t>(hash % seen.size());
+  };
+  for (const Cell& cell : cells) seen[bit(cell)] = true;
   std::vector<std::pair<Cell, Index>> entries;
   for (std::size_t t = 0; t < boxes.size(); ++t)
     each_cell(boxes[t], edge, [&](const Cell& cell) {
-      if (std::binary_search(cells.begin(), cells.end(), cell))
+      if (seen[bit(cell)] && std::binary_search(cells.begin(), cells.end(), cell))
         entries.emplace_back(cell, static_cast<Index>(t));
     });
   std::sort(entries.begin(), entries.end());
