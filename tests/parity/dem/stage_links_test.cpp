@@ -89,14 +89,19 @@ TEST(StageLinks, are_alike_on_threads_schedule_and_ranks_and_resumed) {
   }
 }
 
-/// Two elements, joined by a link or pressed together, that supports hold apart from where they
-/// began, along and across; a second stage changes their modulus.
-dem::testing::Scene held_pair(const char* law, double along, double young) {
+/// Two elements, joined by a link or pressed together, or one on a wall, that supports hold apart
+/// from where they began, along and across; a second stage changes their modulus.
+dem::testing::Scene held_pair(const char* law, double along, double young, bool on_wall = false) {
   dem::testing::Scene s;
   dem::MaterialConfig& m = s.material("m", law, 30e9, 0.2, 2400.0);
   m.tensile_strength = 400e6;
   m.cohesion = 1200e6;
-  s.sphere({0.0, 0.0, 0.0}, 0.01);
+  if (on_wall) {
+    s.wall({0.0, 0.0, 0.01}, {0.0, 0.0, 1.0});
+    s.config.walls.back().friction = 0.9;
+  } else {
+    s.sphere({0.0, 0.0, 0.0}, 0.01);
+  }
   s.sphere({0.0, 0.0, 0.02}, 0.01);
   if (along > 0.0)
     s.link(0, 1,
@@ -111,7 +116,8 @@ dem::testing::Scene held_pair(const char* law, double along, double young) {
   head.velocity.times = {0.0, 2e-5, 2.0001e-5};
   head.velocity.values = {{0.1 * along, 0.0, along}, {0.1 * along, 0.0, along}, {}};
   foot.fix = head.fix = {"all"};
-  s.config.supports = {foot, head};
+  s.config.supports = {head};
+  if (!on_wall) s.config.supports.push_back(foot);
   s.config.probes = {{"along", "head", "force_z", "sum"},
                      {"across", "head", "force_x", "sum"},
                      {"way", "head", "displacement_z", "mean"},
@@ -133,12 +139,19 @@ dem::testing::Scene held_pair(const char* law, double along, double young) {
 /// F = K d, so with another K the force and what is stored, F d/2, change by the same share.
 TEST(StageModuli,
      change_what_is_stored_and_the_work_by_half_of_the_stiffness_times_the_way_squared) {
+  struct Held {
+    const char* law;
+    double along;
+    bool on_wall = false;
+  };
   for (const double by : {2.0, 0.25})
-    for (const auto& [law, along] : {std::pair{"concrete", 0.05}, std::pair{"parallel", 0.05},
-                                     std::pair{"concrete", -0.05}, std::pair{"grain", -0.05}})
+    for (const auto& [law, along, on_wall] :
+         {Held{"concrete", 0.05}, Held{"parallel", 0.05}, Held{"concrete", -0.05},
+          Held{"grain", -0.05}, Held{"grain", -0.05, true}})
       for (const char* contact : {"linear", "hertz"}) {
-        SCOPED_TRACE(::testing::Message() << law << " " << along << " " << contact << " " << by);
-        dem::testing::Scene s = held_pair(law, along, by * 30e9);
+        SCOPED_TRACE(::testing::Message()
+                     << law << " " << along << " " << contact << " " << by << " " << on_wall);
+        dem::testing::Scene s = held_pair(law, along, by * 30e9, on_wall);
         s.config.contact.law = contact;
         const auto method = make_method(s.config, s.model, {}, nullptr);
         StageControl stages(*method, s.config.probes, "", nullptr);
@@ -210,26 +223,83 @@ TEST(StageLinks, are_as_if_built_with_the_materials_of_the_stage) {
     s.model.links[k].material = static_cast<std::int16_t>(k % 2);
   }
   s.config.stages[1].materials = {{"m", 1e6, 3e6, 0.3}};
-  s.config.stages[1].materials[0].young = 15e9;
-  ASSERT_TRUE(dem::stage_problems(s.config).empty());
-  StageProgress second;
-  second.index = 1;
-  const dem::Config then = dem::config_at(s.config, second);
-  dem::World w = dem::make_world(s.config, s.model, {});
-  dem::change_moduli(w, s.config, then);
-  dem::configure(w, then);
-  const dem::World built = dem::make_world(then, s.model, {});
-  ASSERT_EQ(w.concrete.groups.size(), 10U);
-  for (std::size_t g = 0; g < w.concrete.groups.size(); ++g) {
-    const dem::ConcreteLink &is = w.concrete.groups[g].law, &should = built.concrete.groups[g].law;
-    EXPECT_DOUBLE_EQ(is.tensile_strength, should.tensile_strength) << g;
-    EXPECT_DOUBLE_EQ(is.cohesion, should.cohesion) << g;
-    EXPECT_DOUBLE_EQ(is.broken_friction, should.broken_friction) << g;
-    EXPECT_DOUBLE_EQ(is.modulus, should.modulus) << g;
+  for (const double young : {15e9, 120e9}) {
+    s.config.stages[1].materials[0].young = young;
+    ASSERT_TRUE(dem::stage_problems(s.config).empty());
+    StageProgress second;
+    second.index = 1;
+    const dem::Config then = dem::config_at(s.config, second);
+    dem::World w = dem::make_world(s.config, s.model, {});
+    dem::change_moduli(w, s.config, then);
+    dem::configure(w, then);
+    const dem::World built = dem::make_world(then, s.model, {});
+    ASSERT_EQ(w.concrete.groups.size(), 10U);
+    std::vector<dem::ConcreteLink> on_device;
+    copy_to(on_device, w.concrete.on_device.laws);
+    ASSERT_EQ(on_device.size(), 10U);
+    for (std::size_t g = 0; g < w.concrete.groups.size(); ++g) {
+      const dem::ConcreteLink& should = built.concrete.groups[g].law;
+      for (const dem::ConcreteLink& is : {w.concrete.groups[g].law, on_device[g]}) {
+        EXPECT_DOUBLE_EQ(is.tensile_strength, should.tensile_strength) << g;
+        EXPECT_DOUBLE_EQ(is.cohesion, should.cohesion) << g;
+        EXPECT_DOUBLE_EQ(is.broken_friction, should.broken_friction) << g;
+        EXPECT_DOUBLE_EQ(is.modulus, should.modulus) << g;
+      }
+    }
+    for (Index i = 0; i < w.concrete.size(); ++i)
+      EXPECT_DOUBLE_EQ(w.concrete.stiffness.data()[i], built.concrete.stiffness.data()[i]) << i;
+    // the elements' own material became stiffer, or both stay resolved as they were
+    EXPECT_DOUBLE_EQ(w.given->contact_step,
+                     young > 30e9 ? built.given->contact_step : w.given->first_contact_step);
   }
-  for (Index i = 0; i < w.concrete.size(); ++i)
-    EXPECT_DOUBLE_EQ(w.concrete.stiffness.data()[i], built.concrete.stiffness.data()[i]) << i;
-  EXPECT_LE(w.given->contact_step, built.given->contact_step);
+}
+
+/// A contact that closes in a stage with 100 times the modulus takes a tenth of the time: resolved
+/// by as many steps it gives back all of its energy.
+TEST(StageModuli, shorten_the_step_that_resolves_contacts) {
+  dem::testing::Scene s;
+  s.material("m", "grain", 1e8, 0.2, 2400.0);
+  s.config.contact.restitution = 1.0;
+  s.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  s.sphere({0.0, 0.0, 0.011}, 0.01, {0.0, 0.0, -1.0});
+  s.config.time.end = 1.0;
+  s.config.probes = {{"speed", "", "velocity_z", "mean"}};
+  s.config.stages.resize(2);
+  s.config.stages[0].name = "soft";
+  s.config.stages[0].until = 4e-4;
+  s.config.stages[1].name = "stiff";
+  s.config.stages[1].until = 3e-3;
+  s.config.stages[1].materials.resize(1);
+  s.config.stages[1].materials[0].name = "m";
+  s.config.stages[1].materials[0].young = 1e10;
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  EXPECT_NEAR(method->probes()[0], 1.0, 1e-2);
+}
+
+/// Links with a fracture energy part at an opening of their own, which softer ones would reach
+/// before their strength.
+TEST(StageModuli, with_which_links_would_part_below_their_strength_are_refused) {
+  dem::testing::Scene s = weakened("concrete");
+  s.model.bulk.resize(1);
+  s.model.bulk[0].rupture_opening = 5e-5;
+  s.config.stages[1].materials = {{"m"}};
+  for (const double young : {20e9, 1e9}) {
+    s.config.stages[1].materials[0].young = young;
+    std::string told;
+    try {
+      make_method(s.config, s.model, {}, nullptr);
+    } catch (const InputError& error) {
+      told = error.what();
+    }
+    if (young > 10e9)
+      EXPECT_EQ(told, "");
+    else
+      EXPECT_NE(told.find("stage.material.m.young = 1e+09 Pa: a link would reach its strength "
+                          "beyond the opening"),
+                std::string::npos)
+          << told;
+  }
 }
 
 TEST(StageLinks, of_no_such_material_or_law_are_a_problem) {
