@@ -8,7 +8,7 @@
 cd "$(dirname "$0")/.." || exit 1
 . scripts/relink.sh
 mkdir -p build/compilers
-cases=(cases/{rc_slab,brazilian_disc,three_point_bending,colliding_cubes_3d,spall_bar_3d}/small.toml tests/attack/{dem,fdem,fdem3,bolted,fluids,coupled}.toml)
+cases=(cases/{rc_slab,brazilian_disc,three_point_bending,colliding_cubes_3d,spall_bar_3d}/small.toml tests/attack/{dem,fdem,fdem3,bolted,bolted_3d,fluids,coupled}.toml)
 methods=(exec core domain dem fdem fdem3 prepare)
 kinds=("$@") there=()
 [ ${#kinds[@]} -gt 0 ] || kinds=(g++:-O1 g++:-O2 g++:-O3 clang++:-O1 clang++:-O2 clang++:-O3)

@@ -41,7 +41,7 @@ commands_of() {  # CASE
     setarch -R "$breccia" $words > "$out.log" 2>&1 || { echo "$words: ends with $?"; tail -3 "$out.log"; touch "$findings/program"; }
   done
 }
-for name in dem fdem fdem3 bolted fluids coupled; do
+for name in dem fdem fdem3 bolted bolted_3d fluids coupled; do
   while [ "$(jobs -rp | wc -l)" -ge "${JOBS:-2}" ]; do wait -n; done
   commands_of $name &
 done

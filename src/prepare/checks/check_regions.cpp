@@ -204,9 +204,7 @@ std::string problem_of_point(const std::string& key, const Vector& point,
     if (!outline.bounds) return "";
     const double apart = gap(here, *outline.bounds).first;
     if (apart <= 1e-9) return "";
-    if (apart >= least) continue;
-    least = apart;
-    nearest = &outline;
+    if (apart < least) least = apart, nearest = &outline;
   }
   if (nearest == nullptr) return "";
   const std::string z = std::is_same_v<Vector, Vec2> ? "" : ", " + place(x.z);
@@ -303,8 +301,10 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
     if (problems.back().empty()) problems.back() = problem_of_dug(config, load, outlines);
   }
   for (const auto& bolt : config.bolts)
-    for (const auto& point : fdem_shared::corners_of(bolt))
+    for (const auto& point : fdem_shared::corners_of(bolt)) {
       problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
+      if (bolt.is_ring() && !problems.back().empty()) break;
+    }
   if constexpr (requires { config.joint_sets; })
     for (const auto& set : config.joint_sets)
       problems.push_back(problem_of_set(set, folder, outlines));
