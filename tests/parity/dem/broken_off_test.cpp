@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 const std::string small_slab = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
-class BrokenOff : public testing::Test {
+class BrokenOff : public ::testing::Test {
  protected:
   std::string folder(const std::string& name) const { return scratch / name; }
   nlohmann::json summary(const std::string& name) const {
