@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "exec/memory.hpp"
 #include "exec/no_memory.hpp"
 #include "io/json.hpp"
 
@@ -86,6 +87,8 @@ Json json_of(const Summary& s) {
   for (const Fact& fact : s.facts)
     if (fact.path.find('.') == std::string::npos) put(json, fact);
   json["peak_memory_bytes"] = s.peak_memory;
+  if (s.machine.device.starts_with("cuda"))
+    json["peak_device_bytes"] = peak_array_bytes(Space::cuda);
   if (s.energy) json["energy"] = energy_json(*s.energy, s.kinetic_share);
   for (const Fact& fact : s.facts)
     if (fact.path.find('.') != std::string::npos && !fact.path.starts_with("model."))
