@@ -1,5 +1,5 @@
 #pragma once
-// What a device wants of the host in the middle of a step.
+// Requests of a device to the host in the middle of a step.
 
 #include <cstdint>
 

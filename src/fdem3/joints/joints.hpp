@@ -52,7 +52,7 @@ struct FaceShapeOf {
 };
 using FaceShape = FaceShapeOf<double>;
 
-/// What is kept of a joint from the step on in which it softens, breaks or is cut. All others are
+/// The record of a joint from the step on in which it softens, breaks or is cut. All others are
 /// as this begins.
 struct JointFailure {
   JointPoints points;      ///< damage and largest opening and slip

@@ -206,7 +206,7 @@ class Joining {
   /// No discontinuity, which is there from the start.
   bool is_within(const std::array<Index, 3>& corners) const { return !weak_.contains(corners); }
 
-  /// What joints are at the start, by their faces.
+  /// Lengths, shapes and strengths of joints at the start, by their faces.
   void measure() {
     const std::size_t count = list_.face_a.size();
     list_.turn.resize(count);

@@ -34,8 +34,8 @@ struct BoltNodeOf {
   Across across{};       ///< Q of the segment  [N; in 2D N/m]
   Across sheared{};      ///< the part of its offset that stays  [m]
   double crushed = 0.0;  ///< work that that took  [J; in 2D J/m]
-  /// What carries the segment, as it came, by its parts along the edges from corner 0 of the
-  /// element where it begins, and of the one where it ends.  [-]
+  /// The directions carried of the segment as it came, by parts along the edges from corner 0 of
+  /// the element where it begins, and of the one where it ends.  [-]
   CarriedOf<Vector> begin{}, end{};
 };
 

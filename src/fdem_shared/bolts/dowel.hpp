@@ -10,7 +10,7 @@
 
 namespace breccia::fdem_shared {
 
-/// What lies across a bar: one number in the plane, two in space.
+/// The part of a way across a bar: one number in the plane, two in space.
 template <class Vector>
 using AcrossOf = std::conditional_t<std::is_same_v<Vector, Vec2>, double, Vec2>;
 
@@ -28,8 +28,8 @@ inline double as_one(const Vec2& across) {
   return norm(across);
 }
 
-/// What the rock at one end of a piece of a bar carries with it: the way along the bar, in space
-/// also a direction across it, which tells the two ways of an offset apart.
+/// Directions that the rock at one end of a piece of a bar carries with it: the way along the bar,
+/// in space also one across it, which tells the two ways of an offset apart.
 template <class Vector>
 struct CarriedOf;
 template <>

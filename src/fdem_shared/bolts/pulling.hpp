@@ -1,5 +1,5 @@
 #pragma once
-// What bolts do to the elements that they are tied to: fdem_shared/bolts/bolts.hpp.
+// The action of bolts on the elements that they are tied to: fdem_shared/bolts/bolts.hpp.
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ struct BoltNodeNow {
   CarriedOf<Vec3> carried(const CarriedOf<Vec3>& parts) const {
     return {carried(parts.along), carried(parts.side)};
   }
-  /// What the rock here will carry of a segment that comes now.
+  /// The directions that the rock here carries of a segment that comes now.
   void carry(const Vec2& way, CarriedOf<Vec2>& carried) const { carried.along = parts(way); }
   void carry(const Vec3& way, CarriedOf<Vec3>& carried) const {
     const double x = std::abs(way.x), y = std::abs(way.y), z = std::abs(way.z);

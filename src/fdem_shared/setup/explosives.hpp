@@ -9,7 +9,7 @@
 
 namespace breccia::fdem_shared {
 
-/// What is wrong with explosives.
+/// Problems of explosives in a case.
 template <class Config>
 void check_gas(const Config& config, std::vector<std::string>& problems) {
   for (const auto& l : config.loads) {

@@ -1,5 +1,5 @@
 #pragma once
-// What results tell of bolts, and what checkpoints keep of them.
+// Bolts in results and in checkpoints.
 
 #include <algorithm>
 #include <cmath>

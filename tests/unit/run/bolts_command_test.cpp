@@ -10,7 +10,7 @@
 namespace breccia {
 namespace bolts_command_test {
 
-/// What it says of the example with one piece of its text changed; empty: it is good.
+/// The output of `check` for the example with one piece of its text changed; empty: it is good.
 std::string said_of(const std::string& from, const std::string& to) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/bolted.toml", output = folder.path() + "/said.txt";
