@@ -136,20 +136,25 @@ def command_of(kind, text, options, folder, number, schema):
     return ["breccia", "check", file]
 
 
-def run_page(page, program, schema):
+def write_wrapper(folder, program):
+    """Writes the program that samples call. Once and before any thread starts a process: a process that is forked while the file is
+    open for writing holds it open, and the system refuses to run it until then ("text file busy")."""
+    wrapper = folder / "breccia"
+    wrapper.write_text(WRAPPER.format(program=program))
+    wrapper.chmod(0o755)
+    return wrapper
+
+
+def run_page(page, wrapper, program, schema):
     """Numbers of samples that ran, that were skipped, and texts of what failed."""
     ran, skipped, failed = 0, 0, []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        (folder / "bin").mkdir()
-        wrapper = folder / "bin/breccia"
-        wrapper.write_text(WRAPPER.format(program=program))
-        wrapper.chmod(0o755)
         for name in ("cases", "scripts", "bench", "src", "examples"):
             (folder / name).symlink_to(ROOT / name)
         (folder / "build/release").mkdir(parents=True)
         (folder / "build/release/breccia").symlink_to(wrapper)
-        environment = {**os.environ, "PATH": f"{folder}/bin:{os.environ['PATH']}", "PYTHONPATH": str(program.parent / "python"), "GOMP_SPINCOUNT": "2000"}
+        environment = {**os.environ, "PATH": f"{wrapper.parent}:{os.environ['PATH']}", "PYTHONPATH": str(program.parent / "python"), "GOMP_SPINCOUNT": "2000"}
         page_text = page.read_text()
         for line in INDENTED.findall(BLOCK.sub("", page_text)):
             failed.append(f"{page}: a sample that no fence shows: {line.strip()}")
@@ -197,11 +202,14 @@ def main():
     schema = json.loads(subprocess.run([arguments.program, "keys", "--schema"], check=True, capture_output=True, text=True).stdout)
     total, left, problems = 0, 0, []
 
-    def timed(page):
-        begin = time.monotonic()
-        return *run_page(page, arguments.program.resolve(), schema), time.monotonic() - begin
+    program = arguments.program.resolve()
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        wrapper = write_wrapper(pathlib.Path(folder), program)
 
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        def timed(page):
+            begin = time.monotonic()
+            return *run_page(page, wrapper, program, schema), time.monotonic() - begin
+
         results = list(zip(pages, pool.map(timed, pages)))
     for page, (ran, skipped, failed, taken) in results:
         total, left, problems = total + ran, left + skipped, problems + failed
