@@ -7,13 +7,13 @@
 
 namespace breccia::fdem {
 
-void Shape::take_common(World& w, Communicator& ranks) {
+void ShapeOfRanks::take_common(World& w, Communicator& ranks) {
   fdem_shared::take_fluid(ranks, *w.given, w.fluid);
   fdem_shared::take_bolts(ranks, *w.given, w.bolts);
   fdem_shared::take_gas(ranks, w.fluid.gas);
 }
 
-void Shape::derive_part(World& w, Space space) {
+void ShapeOfRanks::derive_part(World& w, Space space) {
   const Index joints = w.joints.size();
   std::vector<JointEnds> ends;
   ends.reserve(at(joints));

@@ -1,7 +1,8 @@
 #pragma once
 // Triangles, joined along edges, by the words of fdem_shared/shape.hpp.
 
-#include "core/region.hpp"
+#include "fdem/ranks_shape.hpp"
+#include "fdem/setup/shape.hpp"
 #include "fdem/world.hpp"
 #include "fdem_shared/fluid/flow.hpp"
 #include "fdem_shared/shape.hpp"
@@ -14,7 +15,7 @@ inline Vec3 centroid(const TriangleNodes& nodes) {
   return {sum.x / 3.0, sum.y / 3.0, 0.0};
 }
 
-struct Shape {
+struct Shape : ShapeOfSetUp, ShapeOfRanks {
   using Elements = Triangles;
   using Nodes = TriangleNodes;
   using CornersOfElement = Corners;
@@ -91,58 +92,6 @@ struct Shape {
   static bool meets_spheres(const World&) { return false; }
   /// Of what a support holds as a whole.
   static bool contact_alone_presses(const World& w) { return w.triangles.external.size() == 0; }
-
-  // Set-up (fdem/setup).
-  struct AtStart {
-    Mat2 reference;
-    double mass;  ///< of a corner  [kg/m]
-    double edge;  ///< of the equilateral triangle as large  [m]
-  };
-  static AtStart at_start(const TriangleNodes& nodes, double density, std::size_t number);
-  /// Supports of this stage: the place in Case::holds of each triangle of the whole mesh, -1: free.
-  static std::vector<Index> prescribe(World& w, const Config& config);
-  static constexpr const char *side_words = "edges", *named_word = "line";
-  static const std::string& named_sides(const RegionConfig& region) { return region.edges; }
-  static auto& side_sets(const Model& model) { return model.edge_sets; }
-  static auto& sides_of_set(const Model::EdgeSet& set) { return set.edges; }
-  /// Whether a point lies in the forms of a region besides its box.
-  static bool is_within(const RegionConfig& region, const Vec2& x) {
-    return (!(region.radius > 0.0) || in_circle(region.center, region.radius, x)) &&
-           (region.polygon.empty() || in_polygon(region.polygon, x));
-  }
-  static bool is_plain(const RegionConfig& region) { return region.polygon.empty(); }
-
-  // Ranks: what triangles have besides (fdem/ranks.cpp).
-
-  /// Costs on one core, in units of some 3 ns (bench/notes/cpu.md).
-  static constexpr fdem_shared::Costs costs{
-      .element = 8, .end_of_joint = 3, .end_of_couple = 16, .tied_corner = 3};
-  /// Waking joints look at triangles that nothing ties yet.
-  static bool needs_all_ghosts(const World& w) { return w.given->extrinsic; }
-  /// Calls visit(forces) with the forces of all joints, as many as there are joints.
-  template <class Visit>
-  static void with_joint_forces(World& w, const Visit& visit) {
-    with_number(w.exec.precision, [&](auto of) {
-      auto& forces = w.joints.force.template as<decltype(of)>();
-      forces.resize(w.joints.size());
-      visit(forces);
-      forces.resize(w.joints.size() + 1);  // the last one is zero
-    });
-  }
-  static void drop_joint_forces(Joints& j) {
-    j.force.in_double.resize(0);
-    j.force.in_single.resize(0);
-  }
-  static void forget_mesh_for_kernels(World& w) {
-    w.node_vertex.clear();
-    w.side_across.clear();
-  }
-  static void derive_part(World& w, Space space);
-  static void take_common(World& w, Communicator& ranks);
-  static void collect_common(const World& part, World& whole) {
-    whole.fluid = part.fluid;
-    whole.bolts = part.bolts;
-  }
 
   /// Present size over that at the start, and the square of a length that no corner may cover in a
   /// step.

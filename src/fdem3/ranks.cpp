@@ -7,13 +7,13 @@
 
 namespace breccia::fdem3 {
 
-void Shape::take_common(World& w, Communicator& ranks) {
+void ShapeOfRanks::take_common(World& w, Communicator& ranks) {
   fdem_shared::take_fluid(ranks, *w.given, w.fluid);
   fdem_shared::take_gas(ranks, w.fluid.gas);
   fdem_shared::take_bolts(ranks, *w.given, w.bolts);
 }
 
-void Shape::derive_part(World& w, Space) {
+void ShapeOfRanks::derive_part(World& w, Space) {
   if (w.given->extrinsic) {
     w.stress.resize(w.tetrahedra.size());
     w.overshoot.resize(w.joints.size());

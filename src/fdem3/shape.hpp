@@ -1,14 +1,15 @@
 #pragma once
 // Tetrahedra, joined across faces, by the words of fdem_shared/shape.hpp.
 
-#include "core/region.hpp"
+#include "fdem3/ranks_shape.hpp"
+#include "fdem3/setup/shape.hpp"
 #include "fdem3/world.hpp"
 #include "fdem_shared/fluid/flow.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem3 {
 
-struct Shape {
+struct Shape : ShapeOfSetUp, ShapeOfRanks {
   using Elements = Tetrahedra;
   using Nodes = TetrahedronNodes;
   using CornersOfElement = Corners;
@@ -92,53 +93,6 @@ struct Shape {
   /// Of what a support holds as a whole: no loads, no spheres.
   static bool contact_alone_presses(const World& w) {
     return w.tetrahedra.external.size() == 0 && !w.meets_spheres;
-  }
-
-  // Set-up (fdem3/setup).
-  struct AtStart {
-    ShapeGradients reference;
-    double mass;  ///< of a corner  [kg]
-    double edge;  ///< of the regular tetrahedron as large  [m]
-  };
-  static AtStart at_start(const TetrahedronNodes& nodes, double density, std::size_t number);
-  /// Supports of this stage: the place in Case::holds of each tetrahedron of the whole mesh, -1:
-  /// free.
-  static std::vector<Index> prescribe(World& w, const Config& config);
-  static constexpr const char *side_words = "faces", *named_word = "surface";
-  static const std::string& named_sides(const RegionConfig& region) { return region.faces; }
-  static auto& side_sets(const Model& model) { return model.face_sets; }
-  static auto& sides_of_set(const Model::FaceSet& set) { return set.faces; }
-  /// Whether a point lies in the forms of a region besides its box.
-  static bool is_within(const RegionConfig& region, const Vec3& x) {
-    return (!(region.radius > 0.0) || in_round(region.center, region.radius, region.around, x)) &&
-           (region.polygon.empty() || in_polygon(region.polygon, seen_along(region.around, x)));
-  }
-  static bool is_plain(const RegionConfig& region) {
-    return region.polygon.empty() && (region.around.empty() || !(region.radius > 0.0));
-  }
-
-  // Ranks (fdem3/ranks.cpp).
-
-  /// Costs on one core, in units of some 10 ns (bench/notes/cpu.md).
-  static constexpr fdem_shared::Costs costs{
-      .element = 8, .end_of_joint = 4, .end_of_couple = 6, .tied_corner = 3};
-  /// Waking joints look at tetrahedra that nothing ties yet.
-  static bool needs_all_ghosts(const World& w) { return w.given->extrinsic; }
-  /// Calls visit(forces) with the forces of all joints, as many as there are joints.
-  template <class Visit>
-  static void with_joint_forces(World& w, const Visit& visit) {
-    visit(w.joints.force);
-  }
-  static void drop_joint_forces(Joints& j) { j.force.resize(0); }
-  static void forget_mesh_for_kernels(World& w) {
-    w.node_vertex.clear();
-    w.side_across.clear();
-  }
-  static void derive_part(World& w, Space);
-  static void take_common(World& w, Communicator& ranks);
-  static void collect_common(const World& part, World& whole) {
-    whole.fluid = part.fluid;
-    whole.bolts = part.bolts;
   }
 
   /// Present size over that at the start, and the square of a length that no corner may cover in a

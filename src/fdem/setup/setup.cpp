@@ -190,7 +190,8 @@ void move_to(World& w, Space space) {
   move_world(w, space);
 }
 
-Shape::AtStart Shape::at_start(const TriangleNodes& nodes, double density, std::size_t number) {
+ShapeOfSetUp::AtStart ShapeOfSetUp::at_start(const TriangleNodes& nodes, double density,
+                                             std::size_t number) {
   const Vec2& x = nodes.at[0].position;
   const Mat2 shape = columns(nodes.at[1].position - x, nodes.at[2].position - x);
   const double area = 0.5 * determinant(shape);
@@ -200,7 +201,7 @@ Shape::AtStart Shape::at_start(const TriangleNodes& nodes, double density, std::
   return {inverse(shape), density * area / 3.0, std::sqrt(4.0 * area / std::sqrt(3.0))};
 }
 
-std::vector<Index> Shape::prescribe(World& w, const Config& config) {
+std::vector<Index> ShapeOfSetUp::prescribe(World& w, const Config& config) {
   std::vector<Hold> holds;
   std::vector<Index> hold(corners_of_bodies(w, config) / 3, -1);
   hold_removed(w, config, Hold{.fixed = 0x3f, .gone = 1}, holds, hold);

@@ -294,7 +294,8 @@ void move_to(World& w, Space space) {
   move_world(w, space);
 }
 
-Shape::AtStart Shape::at_start(const TetrahedronNodes& nodes, double density, std::size_t number) {
+ShapeOfSetUp::AtStart ShapeOfSetUp::at_start(const TetrahedronNodes& nodes, double density,
+                                             std::size_t number) {
   Vec3 x[4];
   places(nodes, x);
   const double volume = dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6.0;
@@ -304,7 +305,7 @@ Shape::AtStart Shape::at_start(const TetrahedronNodes& nodes, double density, st
   return {shape_gradients(x), 0.25 * density * volume, std::cbrt(6.0 * std::sqrt(2.0) * volume)};
 }
 
-std::vector<Index> Shape::prescribe(World& w, const Config& config) {
+std::vector<Index> ShapeOfSetUp::prescribe(World& w, const Config& config) {
   std::vector<Hold> holds;
   std::vector<Index> hold(corners_of_bodies(w, config) / 4, -1);
   hold_removed(w, config, Hold{.fixed = 0xfff, .gone = 1}, holds, hold);
