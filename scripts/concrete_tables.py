@@ -53,7 +53,7 @@ def slow(lines):
             ("f_c / f_t", f"{f_c / f_t:.1f}", "10 to 12", misfit(10, 12, f_c / f_t)),
             ("Brazilian disc, 2 P/(pi d t), over f_t", f"{mean('brazilian') / f_t:.2f} ({spread('brazilian', 'strength', 2)} MPa)", "1.0 (Model Code 2010) to 1.1 (EN 1992-1-1, 1/0.9)", misfit(1, 1.1, mean("brazilian") / f_t)),
             ("plain beam 100 mm high, one line of load, flexural strength over f_t", f"{mean('bending_plain') / f_t:.2f} ({spread('bending_plain', 'strength', 2)} MPa)",
-             f"{FLEXURE} (Model Code 2010, 5.1.5.1); some 1.88 under one line (below)", f"{misfit(FLEXURE, FLEXURE, mean('bending_plain') / f_t)}; {misfit(1.88, 1.88, mean('bending_plain') / f_t)}"),
+             f"{FLEXURE} (Model Code 2010, 5.1.5.1); some 1.88 under one line", f"{misfit(FLEXURE, FLEXURE, mean('bending_plain') / f_t)}; {misfit(1.88, 1.88, mean('bending_plain') / f_t)}"),
             ("notched beam, 3 P l/(2 b h^2) of the ligament", spread("bending", "strength", 2) + " MPa", "", "")]
     for p, low, high, words in ((5, f_c + RICHART * 5, 54, "f_c + 4.1 p, Richart 1928: with f_c of this table to 33"), (20, 105, 110, ""), (50, 180, 200, ""), (100, 300, 300, "about"),
                                 (200, 500, 550, "Gabet, Vu, Poinard: R30A7, as commonly quoted")):
