@@ -33,9 +33,9 @@ std::string specimens_of(const lab::Sample& s) {
         "largest wide and twice as high.",
         1e3 * s.material.mix.smallest, 1e3 * s.material.mix.largest);
   return fmt::format(
-      "Specimens of spheres, {} in the prism of 0.1 x 0.1 x 0.2 m and in the disc, and as large "
+      "Specimens of spheres, {} in the prism of 0.1 x 0.1 x 0.2 m, {} in the disc, and as large "
       "ones as the prism's in the others; compactness {}, interaction range {}.",
-      s.elements, s.compactness, s.range);
+      s.elements, std::max(s.elements, lab::fewest_in_disc), s.compactness, s.range);
 }
 std::string specimens_of(const lab::RockSample& s) {
   return fmt::format(
@@ -133,12 +133,10 @@ struct TestCommand {
                   int exit_code) {
     constexpr int check_failed = 9;
     for (const lab::PassportLine& line : lines) {
-      const std::string verdict =
-          !line.target ? ""
-                       : fmt::format("  target {}, {}", lab::short_number(*line.target),
-                                     line.pass() ? "pass" : "fail");
-      fmt::print("{:<38} {:<16} {}{}\n", line.test, line.quantity, lab::spread_text(line.spread),
-                 verdict);
+      const std::string verdict = !line.target ? ""
+                                               : fmt::format("  target {}, {}", line.target_text(),
+                                                             line.pass() ? "pass" : "fail");
+      fmt::print("{:<38} {:<16} {}{}\n", line.test, line.quantity, line.shown_text(), verdict);
       if (exit_code == 0 && !line.pass()) exit_code = check_failed;
     }
     fmt::print("page {0}/passport.md  curves {0}/curves, {0}/passport.svg\n", harmless(out));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double prism_edge = 0.1, prism_height = 0.2;  // m
 // EN 12390-6: 150 mm, strips of 10 mm. Of concrete that parts slowly a smaller disc, or wider
-// strips, bears far more than f_t (docs/validation-concrete.md).
+// strips, bears far more than f_t (docs/trials-concrete.md).
 constexpr double disc_diameter = 0.15, disc_thickness = 0.05, strip_width = 0.01;
 constexpr double beam_length = 0.34, beam_edge = 0.1, beam_notch = 0.033;
 constexpr double far = 1.0;
@@ -186,13 +186,14 @@ void pull_notched(dem::Config& c, const SpecimenTest& test, double radius) {
 /// Strips press a disc along x.
 void load_strips(dem::Config& c, const Sample& sample, double speed) {
   const double volume = pi / 4.0 * disc_diameter * disc_diameter * disc_thickness;
-  const double radius = mean_radius(volume * sample.compactness, sample.elements);
+  const int elements = std::max(sample.elements, fewest_in_disc);
+  const double radius = mean_radius(volume * sample.compactness, elements);
   dem::BodyConfig& body = c.bodies[0];
   body.shape = "cylinder";
   body.size = {};
   body.radius = 0.5 * disc_diameter;
   body.length = disc_thickness;
-  body.pack.count = sample.elements;
+  body.pack.count = elements;
   const double strip = 0.5 * strip_width, depth = 0.5 * disc_diameter - 2.5 * radius;
   const double ramp = 0.1 * c.time.end;
   c.supports = {support("top", {depth, -strip, -far}, {far, strip, far}, {"x"},

@@ -18,8 +18,9 @@ struct Sample {
   dem::ContactConfig contact;
   double size_ratio = 2.0, compactness = 0.56;  ///< of the packing  [-]
   double range = 1.443;                         ///< interaction range  [-]
-  int elements =
-      1200;  ///< of the prism and of the disc; the others have as large ones as the prism  [-]
+  /// Of the prism, and of the disc if it is fewest_in_disc or more; the others have as large ones
+  /// as the prism.  [-]
+  int elements = 1200;
 };
 
 /// The problem of a name that no material of a case has.
@@ -75,6 +76,9 @@ std::vector<SpecimenTest> tests_of(const dem::MaterialConfig& material);
 /// Fewer spheres in the prism reach into walls before these move: a cube of 400 begins pressed with
 /// a third of its strength.
 inline constexpr int fewest_between_walls = 600;
+/// Elements of a disc at least: with fewer one element or two lie below a strip, and strengths of
+/// packings scatter by 15 %.
+inline constexpr int fewest_in_disc = 2400;
 /// Whether walls load the specimen.
 bool has_walls(const SpecimenTest& test);
 

@@ -1,6 +1,7 @@
 #pragma once
 // Passport of a material: its tests beside a laboratory's, as curves, numbers, one page.
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -49,14 +50,20 @@ struct PassportLine {
   std::string test, quantity, unit;
   Spread spread;
   std::optional<double> target;
-  double tolerance = 0.0;  ///< of the mean, over the target
-  bool pass() const;
+  double tolerance = 0.0;         ///< of the mean, over the target
+  std::optional<double> up_to{};  ///< the target is all between it and this
+
+  double misfit() const;  ///< of the mean, from the nearer end of the target  [-]
+  bool pass() const { return !target || std::abs(misfit()) <= tolerance; }
+  /// Mean and deviation, and the target, in the unit of the page.
+  std::string shown_text() const;
+  std::string target_text() const;
 };
 
 /// @param targets  macroscopic numbers of the material; none: the line has no verdict. Means may
-///                 miss them by 3 % (E), 5 % (strengths), 10 % (nu, fracture energy). The splitting
-///                 strength of spheres is held against the tensile one (fib Model Code 2010,
-///                 5.1.5.1) unless there is a target of its own.
+///                 miss them by 3 % (E), 5 % (strengths), 10 % (nu, fracture energy). Unless it has
+///                 a target of its own, the splitting strength of spheres lies between the tensile
+///                 one (fib Model Code 2010, 5.1.5.1) and that over 0.9 (EN 1992-1-1, 3.1.2).
 std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results,
                                          const std::vector<MaterialTarget>& targets);
 
