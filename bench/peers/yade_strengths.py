@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Strengths of the same spheres in Breccia and in YADE (Cpm, parameters of its examples/concrete/uniax.py).
 
-    bench/compare_strengths_with_yade.py build/release/breccia [-o out/yade] [--seeds 3] [--material MATERIAL]
+    bench/peers/yade_strengths.py build/release/breccia [-o out/yade] [--seeds 3] [--material MATERIAL]
 
 Prisms of 941 and 2,000 elements, pulled and pressed between smooth ends, and a cube of 941, smooth and held, from the
 specimens of `breccia test`; links reach equally far in both. Prints the table of docs/validation-concrete.md; curves are in
@@ -17,7 +17,7 @@ import statistics
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import frames  # noqa: E402
 
@@ -96,7 +96,7 @@ def one(breccia, out, spec, seed, material):
     if not curve.exists():
         layer = 2 * (0.75 * 0.002 * 0.56 / math.pi / elements) ** (1 / 3)
         partial = out / f"{key}-yade.tmp"
-        said = quiet("yade", "-n", "-x", "-j1", ROOT / "bench/yade_specimen.py", spheres, partial, rate, end, int(held), height,
+        said = quiet("yade", "-n", "-x", "-j1", ROOT / "bench/peers/yade_specimen.py", spheres, partial, rate, end, int(held), height,
                      0.01, RANGE, layer)
         (out / f"{key}-yade.log").write_text(said)
         os.replace(partial, curve)
