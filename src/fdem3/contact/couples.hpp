@@ -22,7 +22,7 @@ struct CoupleState {
   Vec3 drag;      ///< T: tangential force on a  [N]
   double spring;  ///< k: stiffness of its spring; 0: it is new  [N/m]
   double scale;   ///< of its normal penalty; 0: it is new  [-]
-  double begun;   ///< energy of the overlap that it began with, which nobody paid for  [J]
+  double begun;   ///< energy of the overlap that it began with and nobody paid for  [J]
   double work;    ///< taken up since it began to touch, friction included  [J]
   double slid;    ///< the part of it that friction has spent  [J]
   double sprung;  ///< the part of it that the spring of friction holds  [J]
@@ -325,8 +325,13 @@ struct CoupleForces {
     }
   }
   /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
-  /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
-  /// part of the joint's work.
+  /// forces as far as friction bears them, so that neither force jumps, and stores what the joint's
+  /// pressed points held, no more: with P, W of the joint, F, E of the overlap at its full penalty
+  /// and x the share of E that is taken off,
+  ///
+  ///   s (1 - x^2) F = P,   s (1 - x)^2 E = W,   0.01 <= s <= 2,   x >= 0.
+  ///
+  /// A tilted joint overlaps farther at its corners than at its points, and holds far less than E.
   BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Partner& of_a,
                      const Partner& of_b) const {
     JointFailure* const legacy = broken.find(joint);
@@ -336,19 +341,26 @@ struct CoupleForces {
     press(law.penalty, of_a, of_b, whole);
     const double size = norm(whole.on_a);
     if (!(size > 0.0)) return;
-    kept.scale = min(2.0, max(0.01, pressing / size));
-    const double now = kept.scale * size;
+    const JointWork held = legacy->held;
+    const double excess = held.open > 0.0 ? pressing * whole.energy / (size * held.open) : 1.0;
+    const double steeper = 0.25 * (excess + 1.0) * (excess + 1.0) / excess;  // 1/(1 - x^2)
+    kept.scale = min(2.0, max(0.01, pressing / size * (excess > 1.0 ? steeper : 1.0)));
+    const double energy = kept.scale * whole.energy;
+    const double off = energy > held.open ? 1.0 - sqrt(held.open / energy) : 0.0;  // x
+    kept.begun = off * energy;
+    const double now = (1.0 - off * off) * kept.scale * size;
     const Vec3 n = (1.0 / size) * whole.on_a;
     Vec3 drag = legacy->shear_at_break;
     drag -= dot(drag, n) * n;
     const double drawn = norm(drag), most = law.friction * now;
     if (drawn > most) drag = (most / drawn) * drag;
     const double stiffness = law.tangential * 0.5 * whole.area;
+    const double spring = stiffness > 0.0 ? 0.5 * dot(drag, drag) / stiffness : 0.0;
     if (!(stiffness > 0.0)) drag = {};
+    if (spring > held.slide) drag = sqrt(held.slide / spring) * drag;
     kept.drag = drag;
     kept.spring = max(0.0, stiffness);
-    const JointWork given{kept.scale * whole.energy,
-                          stiffness > 0.0 ? 0.5 * dot(drag, drag) / stiffness : 0.0};
+    const JointWork given{min(energy, held.open), min(spring, held.slide)};
     kept.work = given.open + given.slide;
     kept.sprung = given.slide;
     legacy->inherited = given;

@@ -120,14 +120,16 @@ struct StableStep {
     }
     return largest;
   }
-  /// A live joint adds 2 p_f A/(3 h) to each row of its nodes; an exposed face 4 k_n A/3 times at
-  /// most 1.366; an absorbing one a third of its area times its impedance.
+  /// A live joint adds 2 p_f A/(3 h) to each row of its nodes, a softened one a quarter more (by
+  /// its corners); an exposed face 4 k_n A/3 times at most 1.366; an absorbing one a third of its
+  /// area times its impedance.
   BR_HD void add_face(Index t, int k, const Vec3 (&x)[4], bool pressed, Parts (&corner)[4]) const {
     double joint = 0.0, contact = 0.0, absorbed = 0.0;
     const Index entry = faces[t].at[k];
     if (entry >= 0 && is_live(stage[pair_of(entry)])) {
       const Index i = pair_of(entry);
-      joint = 2.0 * bonds[bond_of[i]].stiffness * joint_shape[i].area() / (3.0 * joint_length[i]);
+      const double share = stage[i] == JointStage::softened ? 1.0 / 3.0 + corner_share : 1.0 / 3.0;
+      joint = 2.0 * share * bonds[bond_of[i]].stiffness * joint_shape[i].area() / joint_length[i];
     }
     const bool absorbs = dashpots.size > 0 && dashpots[t].at[k] > 0.0;
     if (pressed || absorbs) {

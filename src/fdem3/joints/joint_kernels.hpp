@@ -178,10 +178,24 @@ struct JointForces {
     f[1] = weight * (traction[1] + traction[0]);
     f[2] = weight * (traction[2] + traction[1]);
   }
-  BR_HD void store(Index i, const Vec3 (&traction)[3], double area) const {
-    JointForce f;
-    share(traction, area, f.at);
-    force[i] = f;
+  /// Where a point softens, the other two let the faces turn about the line between them and run
+  /// into each other: the corner beyond that line presses in the place of what the point has lost,
+  /// no farther than the point is open.
+  /// @param slope  p_f / h  [Pa/m]  @returns the pressure of the corners  [N]
+  BR_HD static double press_corners(double slope, double area, const Vec3& normal,
+                                    const double (&open)[3], const JointPoints& state,
+                                    JointForce& f) {
+    double sum = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      const int corner = (q + 2) % 3;
+      const double depth = min(open[q], open[q] - open[(q + 1) % 3] - open[corner]);
+      const double damage = state.point[q].damage;
+      if (!(damage > 0.0) || !(depth > 0.0)) continue;
+      const double pressed = corner_share * area * (1.0 - fdem::softening(damage)) * slope * depth;
+      f.at[corner] += pressed * normal;
+      sum += pressed;
+    }
+    return sum;
   }
 
   /// Joints as long as they are whole.
@@ -326,7 +340,10 @@ struct JointForces {
       else
         book_drag(i, bond, offset, e, o);
     }
-    store(i, traction, area);
+    JointForce now;
+    share(traction, area, now.at);
+    if (damaged) pressure += press_corners(bond.stiffness / h, area, o.normal, open, state, now);
+    force[i] = now;
     if (damaged) {
       book_work(i, o, way, last, force[i]);
       kept->points = state;
@@ -338,6 +355,14 @@ struct JointForces {
     if (failed >= 2) {
       kept->pressing = max(0.0, pressure);
       kept->shear_at_break = drag;
+      kept->held = {};
+      for (int q = 0; q < 3; ++q) {
+        if (!(open[q] < 0.0)) continue;
+        const fdem::StoredEnergy stored =
+            fdem::stored(bond, strength[i], h, open[q], slid[q], state.point[q]);
+        kept->held.open += area / 3.0 * stored.open;
+        kept->held.slide += area / 3.0 * stored.slide;
+      }
       finish(i, *kept);
     }
   }

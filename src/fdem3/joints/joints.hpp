@@ -59,6 +59,7 @@ struct JointFailure {
   double broke_at = -1.0;  ///< below 0: it is not broken  [s]
   double pressing = 0.0;   ///< compressive force when it broke  [N]
   Vec3 shear_at_break;     ///< on side a  [N]
+  JointWork held;          ///< by its pressed points when it broke  [J]
   JointWork inherited;     ///< of its work, what contact of its faces began with  [J]
 
   /// Visits its members by the names that checkpoints have for them.
@@ -68,6 +69,7 @@ struct JointFailure {
     member("broke_at", "s", &JointFailure::broke_at);
     member("pressing", "N", &JointFailure::pressing);
     member("shear_at_break", "N", &JointFailure::shear_at_break);
+    member("held", "J", &JointFailure::held);
     member("inherited_work", "J", &JointFailure::inherited);
   }
 };
@@ -132,6 +134,10 @@ inline TimesOfBreak times_of_break(const Joints& j) {
 inline InheritedWork works_inherited(const Joints& j) {
   return {j.failure.view()};
 }
+
+/// Of a joint's area, what a corner presses with where the point opposite has failed. It bounds the
+/// stiffness of softened joints (StableStep).  [-]
+inline constexpr double corner_share = 1.0 / 12.0;
 
 /// How far the two faces of a joint have moved apart.
 template <class R>

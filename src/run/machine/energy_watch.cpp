@@ -73,6 +73,12 @@ void KineticShare::look(const EnergyBalance& energy) {
   work = std::max(work, energy.work + energy.start);
 }
 
+bool EnergyWatch::contacts_gave(const EnergyBalance& energy) {
+  if (gave_ || !(energy.contact < 0.0) || !(energy.contact_relative > excess)) return false;
+  gave_ = true;
+  return true;
+}
+
 bool EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {
   if (limits_.stop > 0.0 && judged(energy) > limits_.stop) refuse(energy, limits_.stop, step, time);
   return limits_.warn > 0.0 && judged(energy) > limits_.warn && rows_.above_warn < patience;

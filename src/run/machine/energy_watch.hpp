@@ -37,11 +37,17 @@ class EnergyWatch {
   /// enough. @throws NumericsError if the case has failed
   bool judge_end(const EnergyBalance& energy, std::int64_t step, double time) const;
 
+  /// Whether contacts have given out more than they took up, for the first time beyond `excess` of
+  /// the largest energy.
+  bool contacts_gave(const EnergyBalance& energy);
+  static constexpr double excess = 0.01;  ///<  [-]
+
   const Rows& rows() const { return rows_; }
 
  private:
   EnergyConfig limits_;
   Rows rows_;
+  bool gave_ = false;
 };
 
 /// The largest kinetic energy of a run over the largest work done on it: small if it was

@@ -192,6 +192,12 @@ void Recorder::record(Method& method, Background& background) {
             fmt::format("energies do not add up: error_relative has been above {} for {} rows, "
                         "and is {:.2g}; a smaller time.safety may help",
                         config_.energy.warn, EnergyWatch::patience, last_energy_->error_relative));
+      if (watch_.contacts_gave(*last_energy_))
+        log_->warn("step", method.steps(),
+                   fmt::format("contacts have given out {:.2g} % of the largest energy there was, "
+                               "beyond what they took up; what follows is doubtful. A finer mesh "
+                               "or a smaller time.safety may help",
+                               100.0 * last_energy_->contact_relative));
       state_.unbalanced = watch_.rows();
       state_.moving.look(*last_energy_);
     });

@@ -224,6 +224,39 @@ TEST(FaceJoint, books_what_pressure_takes_on_its_slip) {
   EXPECT_NEAR(given, taken, 1e-3 * taken);
 }
 
+// The faces turn about the line between the points 1 and 2, which stay whole. Corner 2 lies beyond
+// that line and presses where point 0 has failed; before, three points hold the faces.
+TEST(FaceJoint, holds_a_corner_out_of_the_other_face) {
+  const double area = 0.45 * mm * mm, slope = bond().stiffness / (0.5 * mm);
+  OneJoint joint(0, 0, 0);
+  JointForce f{};
+  double depth = 0.0, work = 0.0, pressing = 0.0, stored = 0.0;
+  Vec3 last{};
+  for (int i = 1; i <= 4000; ++i) {
+    depth = 5e-9 * i;
+    const JointForce before = f;
+    const Vec3 up{0.0, 0.0, depth};
+    f = joint.moved(up, up, -up, 1e-6);
+    for (int k = 0; k < 3; ++k)
+      work -= 0.5 * dot(before.at[k] + f.at[k], k < 2 ? up - last : last - up);
+    last = up;
+    const double lost = joint.stage() == JointStage::whole
+                            ? 0.0
+                            : 1.0 - fdem::softening(joint.points().point[0].damage);
+    const double now = area / 12.0 * lost * slope * depth;
+    stored += 0.5 * (pressing + now) * 5e-9;
+    pressing = now;
+  }
+  EXPECT_EQ(joint.stage(), JointStage::softened);
+  EXPECT_NEAR(joint.points().point[0].damage, 1.0, 1e-12);
+  EXPECT_LT(joint.points().point[1].damage, 1e-6);
+  const double pressed = area / 12.0 * slope * depth;
+  EXPECT_NEAR(f.at[2].z, pressed, 1e-3 * pressed);
+  EXPECT_NEAR(f.at[0].z, 0.0, 1e-3 * pressed);
+  EXPECT_NEAR(work, stored + area / 3.0 * 10.0, 1e-3 * stored);
+  EXPECT_NEAR(joint.work().open + joint.work().slide, work, 1e-3 * work);
+}
+
 TEST(FaceJoint, turns_its_forces_with_the_body) {
   const auto turned = [](const Vec3& v) {
     const double c = std::cos(0.7), s = std::sin(0.7);

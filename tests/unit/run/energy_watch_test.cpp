@@ -93,6 +93,21 @@ TEST(EnergyWatch, the_end_of_a_case_is_judged_by_its_last_row) {
   EXPECT_THROW(watch.judge_end(with_error(0.011), 9, 1.0), NumericsError);
 }
 
+TEST(EnergyWatch, contacts_that_give_out_energy_are_told_once) {
+  EnergyWatch watch(EnergyConfig{});
+  EnergyBalance energy;
+  energy.contact = -0.005;
+  energy.contact_relative = 0.005;
+  EXPECT_FALSE(watch.contacts_gave(energy));
+  energy.contact = 0.5;  // dashpots have taken it
+  energy.contact_relative = 0.5;
+  EXPECT_FALSE(watch.contacts_gave(energy));
+  energy.contact = -0.02;
+  energy.contact_relative = 0.02;
+  EXPECT_TRUE(watch.contacts_gave(energy));
+  EXPECT_FALSE(watch.contacts_gave(energy));
+}
+
 TEST(EnergyWatch, limits_of_zero_switch_it_off) {
   EnergyWatch watch(EnergyConfig{0.0, 0.0});
   for (int row = 0; row < 100; ++row) EXPECT_FALSE(watch.look(with_error(0.5), row, 0.0));
