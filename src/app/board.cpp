@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
+#include "core/probe.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 
@@ -15,7 +17,7 @@ namespace {
 constexpr std::array bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
 constexpr std::array plain_bars{"_", ".", ",", "-", "=", "+", "*", "#"};
 constexpr std::size_t name_width = 18, bars_width = 40;
-constexpr std::size_t columns_before_probes = 12;  // step to error_relative
+constexpr std::size_t columns_before_probes = std::size(history_columns);
 
 /// A number with three digits and its unit with a prefix.
 std::string with_unit(double value, const std::string& unit) {

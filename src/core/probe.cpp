@@ -1,5 +1,8 @@
 #include "core/probe.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "core/case_config.hpp"
 
 namespace breccia {
@@ -11,6 +14,11 @@ std::string allowed(unsigned of) {
   return all;
 }
 
+bool is_history_column(const std::string& name) {
+  return std::find(std::begin(history_columns), std::end(history_columns), name) !=
+         std::end(history_columns);
+}
+
 }  // namespace
 
 std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of, std::size_t axes) {
@@ -18,6 +26,8 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of, std::si
   std::vector<std::string> problems;
   const std::string where = "probe." + p.name;
   const auto add = [&](const std::string& text) { problems.push_back(where + text); };
+  if (is_history_column(p.name))
+    add(".name: history.csv has a column of this name already; take another");
   const NamedQuantity& named = quantity_named(p.quantity);
   const Kind kind = named.quantity.kind;
   if ((named.of & of) == 0) {

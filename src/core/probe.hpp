@@ -9,6 +9,11 @@
 
 namespace breccia {
 
+/// The columns of history.csv that every run has, before those of probes.
+inline constexpr const char* history_columns[] = {
+    "step",    "time",     "dt",      "kinetic", "elastic", "fracture",
+    "plastic", "friction", "damping", "contact", "work",    "error_relative"};
+
 /// Sum and range of a quantity; nothing read yet. The same bits in any order.
 struct Readings {
   ExactSum sum;

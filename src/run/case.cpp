@@ -235,10 +235,27 @@ Config read_all(const Source& source, const std::vector<std::string>& overrides)
   }
 }
 
+/// What is wrong with a method that does not exist, alone: keys depend on it.
+template <class Source>
+void refuse_method(const Source& source, const std::vector<std::string>& overrides) {
+  try {
+    read_case<dem::Config>(source, overrides);
+  } catch (const CaseError& error) {
+    for (const Problem& problem : error.problems)
+      if (problem.text.starts_with("method")) {
+        const CaseText& text = text_of(source);
+        throw CaseError({problem}, text.origin, text.text);
+      }
+    throw;
+  }
+}
+
 template <class Source>
 AnyConfig read_config(const Source& source, const std::vector<std::string>& overrides) {
   if (asks_for_two_methods(source, overrides)) return read_all<coupled::Config>(source, overrides);
   const std::string method = case_method(source, overrides);
+  if (method != "dem3d" && method != "fdem2d" && method != "fdem3d")
+    refuse_method(source, overrides);
   if (method == "fdem2d") return read_all<fdem::Config>(source, overrides);
   if (method == "fdem3d") return read_all<fdem3::Config>(source, overrides);
   return read_all<dem::Config>(source, overrides);

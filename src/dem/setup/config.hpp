@@ -125,7 +125,7 @@ struct CutConfig {
     key("center", center, "m", any_number,
         "its centre, in the coordinates of the case; where the origin of a file lies");
     key("size", size, "m", not_negative,
-        "edge lengths of a box; one may be 0: a crack, which parts links");
+        "edge lengths of a box; of a cut one may be 0: a crack, which parts links");
     key("radius", radius, "m", not_negative, "radius of a sphere or cylinder");
     key("length", length, "m", not_negative, "length of a cylinder, along its axis");
     key("axis", axis, "-", any_number, "direction of its own z, along a cylinder");
@@ -312,7 +312,7 @@ struct Config : CaseConfig {
     key.list("body", bodies, "what there is");
     key.table("links", links, "which elements are linked at the start");
     key.table("contact", contact, "what happens where elements touch");
-    key.list("wall", walls, "rigid planes, boxes, cylinders and spheres");
+    key.list("wall", walls, "rigid planes, boxes, cylinders, spheres and surfaces of STL files");
     key.list("support", supports, "prescribed motion");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");

@@ -227,7 +227,7 @@ struct MaterialChange {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("name", name, "name of the material, of law concrete or bonded");
+    key("name", name, "name of the material, of law concrete, parallel or grain");
     key.required("name");
     key("tensile_strength", tensile_strength, "Pa", Range{-1.0, 1e15},
         "tensile strength of its links from now on; below 0: as before");

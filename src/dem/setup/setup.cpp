@@ -275,7 +275,7 @@ void tell_overlaps(const World& w, const Config& config, std::vector<std::string
     if (of[k].share > little)
       warnings.push_back(fmt::format(
           "wall.{}: at the start {} elements reach into it, by up to {:.3g} mm ({:.0f} % of a "
-          "radius), and press with {:.3g} N; is that not meant, move it back by as much",
+          "radius), and press with {:.3g} N; if that is not meant, move the wall back by as much",
           config.walls[k].name, of[k].elements, 1e3 * of[k].deepest, 100.0 * of[k].share,
           norm(of[k].force)));
 }

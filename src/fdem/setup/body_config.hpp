@@ -242,7 +242,7 @@ struct JointSetConfig {
     key("intensity", intensity, "1/m", not_negative,
         "P21 of random lines: their length in the rectangle over its area, met exactly; of lines "
         "with one angle it is also P10, their number per length across them");
-    key("angle", angle, "rad", any_number, "mean angle of the lines from the x axis");
+    key("angle", angle, "rad", Range{-6.3, 6.3}, "mean angle of the lines from the x axis");
     key("spread", spread, "rad", Range{0.0, 1.5708},
         "standard deviation of their angles, by the normal distribution");
     key("length_law", length_law, OneOf{"constant", "exponential", "lognormal", "power"},

@@ -143,7 +143,12 @@ struct CaseReader::State {
     if (const auto typed = node.value_exact<std::string>())
       add(&node, key + " = \"" + *typed + "\" is outside " + range_text(range) + unit, meaning);
     else
-      add(&node, key + " = " + number_text(value) + " is outside " + range_text(range), meaning);
+      add(&node,
+          key + " = " + number_text(value) + " is outside " + range_text(range) + unit +
+              (unit == " rad" && std::abs(value) <= 360.0
+                   ? "; did you mean \"" + number_text(value) + " deg\"?"
+                   : ""),
+          meaning);
     return false;
   }
   bool number(const toml::node& node, const std::string& key, double& to, const char* unit,

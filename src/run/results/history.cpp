@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/probe.hpp"
 #include "core/quantity.hpp"
 #include "io/whole_file.hpp"
 
@@ -48,8 +49,9 @@ History::History(const std::string& path, const std::vector<ProbeConfig>& probes
                  bool stages)
     : file_(path) {
   if (!is_empty(path)) return;
-  std::string names =
-      "step,time,dt,kinetic,elastic,fracture,plastic,friction,damping,contact,work,error_relative";
+  std::string names;
+  for (const char* column : history_columns)
+    names += names.empty() ? column : std::string(",") + column;
   std::string units = "-,s,s";
   const auto add_unit = [&](const std::string& unit) {
     units.append(",").append(in_plane ? per_metre(unit) : unit);

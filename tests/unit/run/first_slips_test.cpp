@@ -1,0 +1,63 @@
+// Slips of a first case: what a reader of cases says of them, and of nothing else.
+
+#include <gtest/gtest.h>
+
+#include "io/whole_file.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace first_slips_test {
+
+constexpr const char* plate = R"(breccia = 1
+method = "fdem2d"
+[time]
+end = "1 us"
+[material.rock]
+density = 2600.0
+young = "30 GPa"
+[[body]]
+name = "rock"
+shape = "plate"
+material = "rock"
+size = ["10 mm", "10 mm"]
+mesh_size = "4 mm"
+)";
+
+std::string said_of(std::string text, const std::string& from, const std::string& to) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/plate.toml", output = folder.path() + "/said.txt";
+  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+  replace_file(path, text);
+  EXPECT_EQ(wait_for(start_program("check " + path, output)), 2);
+  return read_whole_file(output);
+}
+
+TEST(FirstSlips, in_the_method_are_told_alone) {
+  const std::string said = said_of(plate, "\"fdem2d\"", "\"fdem\"");
+  EXPECT_NE(said.find("error: 1 problem"), std::string::npos) << said;
+  EXPECT_NE(said.find("line 2, method = \"fdem\" is not one of dem3d | fdem2d | fdem3d"),
+            std::string::npos)
+      << said;
+}
+
+TEST(FirstSlips, of_degrees_taken_for_radians_are_told) {
+  const std::string set =
+      "[[joint_set]]\nname = \"set\"\nmin = [0.0, 0.0]\n"
+      "max = [\"10 mm\", \"10 mm\"]\nintensity = 100.0\nlength = \"5 mm\"\n";
+  const std::string said = said_of(plate + set + "angle = 30.0\n", "", "");
+  EXPECT_NE(said.find("angle = 30 is outside [-6.3, 6.3] rad; did you mean \"30 deg\"?"),
+            std::string::npos)
+      << said;
+}
+
+TEST(FirstSlips, in_the_name_of_a_probe_are_told) {
+  const std::string probe = "[[probe]]\nname = \"time\"\nquantity = \"velocity_x\"\n";
+  const std::string said = said_of(plate + probe, "", "");
+  EXPECT_NE(said.find("probe.time.name: history.csv has a column of this name already"),
+            std::string::npos)
+      << said;
+}
+
+}  // namespace first_slips_test
+}  // namespace breccia
