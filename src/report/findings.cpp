@@ -319,8 +319,8 @@ class Findings {
     const auto pieces = record_.number("fracture.fragments");
     if (pieces && *pieces > 1.0)
       text += fmt::format(
-          "{} {} pieces are left, the largest with {} of the mass", text.empty() ? "" : ";",
-          count_text(*pieces),
+          "{} {} pieces are left, whole bodies among them, the largest with {} of all mass",
+          text.empty() ? "" : ";", count_text(*pieces),
           percent_text(record_.number("fracture.largest_fragment_fraction").value_or(1.0)));
     if (text.starts_with("  ")) text.erase(0, 2);
     const std::string heard = emission_text();

@@ -448,6 +448,13 @@ RunPlan plan_of(const Case& read) {
   plan.case_digest = read.digest;
   plan.case_folder = read.folder;
   plan.warnings = read.notes;
+  std::visit(
+      [&](const auto& config) {
+        if constexpr (requires { prepare::doubtful_probes(config, read.folder); })
+          for (std::string& doubt : prepare::doubtful_probes(config, read.folder))
+            plan.warnings.push_back(std::move(doubt));
+      },
+      read.config);
   plan.prepared = read.prepared;
   plan.model_digest = read.model_digest;
   return plan;

@@ -31,7 +31,9 @@ TEST(Findings, ABrokenChainIsToldByWhatWhenAndWhere) {
       << text;
   // The link between spheres 3 and 4: at 0.07 m, stretched by 2 %, half of the gap of 50 mm.
   EXPECT_NE(text.find("It began around (96.4, 0.5, 0) mm in chain"), std::string::npos) << text;
-  EXPECT_NE(text.find("2 pieces are left, the largest with 50 % of the mass"), std::string::npos)
+  EXPECT_NE(
+      text.find("2 pieces are left, whole bodies among them, the largest with 50 % of all mass"),
+      std::string::npos)
       << text;
   EXPECT_NE(text.find("pull, right was 4,000 N at its strongest, at 1 ms; 25 % of it is left"),
             std::string::npos)

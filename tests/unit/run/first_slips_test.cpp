@@ -51,6 +51,17 @@ TEST(FirstSlips, of_degrees_taken_for_radians_are_told) {
       << said;
 }
 
+TEST(FirstSlips, of_a_probe_that_reads_nothing_are_told_by_run) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/plate.toml", output = folder.path() + "/said.txt";
+  replace_file(path, plate + std::string("[[probe]]\nname = \"crown\"\nquantity = \"velocity_x\"\n"
+                                         "min = [\"1 m\", \"1 m\"]\nmax = [\"2 m\", \"2 m\"]\n"));
+  EXPECT_EQ(wait_for(start_program("run " + path + " -o " + folder.path() + "/out", output)), 0);
+  const std::string summary = read_whole_file(folder.path() + "/out/summary.json");
+  EXPECT_NE(summary.find("probe.crown"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("takes nothing"), std::string::npos) << summary;
+}
+
 TEST(FirstSlips, in_the_name_of_a_probe_are_told) {
   const std::string probe = "[[probe]]\nname = \"time\"\nquantity = \"velocity_x\"\n";
   const std::string said = said_of(plate + probe, "", "");
