@@ -5,6 +5,9 @@
 // per element, link or pair) or PlanesOf<Number> (three planes). What grows, reorders, saves
 // or sends a state is written once, here and in io/checkpoint, and never lists members again.
 
+#include <type_traits>
+#include <vector>
+
 #include "core/planes.hpp"
 #include "exec/buffer.hpp"
 
@@ -29,12 +32,31 @@ void move_fields(State& state, Space space) {
   state.each_field([space](const char*, const char*, auto& array) { move_array(array, space); });
 }
 
-/// A copy in the host's memory, for output and checks.
+/// Arrays of a state get the items of another's, each in its own space.
+template <class State>
+void copy_fields(State& to, const State& from) {
+  std::vector<const void*> sources;  // each_field visits both states in the same order
+  const_cast<State&>(from).each_field(
+      [&](const char*, const char*, const auto& array) { sources.push_back(&array); });
+  auto source = sources.begin();
+  to.each_field([&](const char*, const char*, auto& array) {
+    copy_to(array, *static_cast<const std::remove_reference_t<decltype(array)>*>(*source++));
+  });
+}
+
+/// A copy in the host's memory, for output and checks. Of a state that is_arrays_alone, these
+/// alone: none is made in its own space.
 template <class State>
 State host_copy(const State& state) {
-  State copy = state;
-  move_fields(copy, Space::host);
-  return copy;
+  if constexpr (requires { requires State::is_arrays_alone; }) {
+    State copy;
+    copy_fields(copy, state);
+    return copy;
+  } else {
+    State copy = state;
+    move_fields(copy, Space::host);
+    return copy;
+  }
 }
 template <class T>
 Buffer<T> host_copy(const Buffer<T>& array) {

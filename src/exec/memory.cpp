@@ -21,15 +21,23 @@ namespace {
 
 constexpr std::size_t alignment =
     64;  // one cache line; the size is kept in the line before the array
-std::atomic<std::size_t> alive_bytes{0}, peak_bytes{0};
-thread_local int clearing_threads = 1;
+/// Arrays of a space that are alive, and the most that were.
+struct Booked {
+  std::atomic<std::size_t> alive{0}, peak{0};
 
-void book(std::size_t bytes) {
-  const std::size_t now = alive_bytes += bytes;
-  std::size_t peak = peak_bytes.load();
-  while (now > peak && !peak_bytes.compare_exchange_weak(peak, now)) {
+  void add(std::size_t bytes) {
+    const std::size_t now = alive += bytes;
+    std::size_t most = peak.load();
+    while (now > most && !peak.compare_exchange_weak(most, now)) {
+    }
   }
+};
+/// Of the host and of the shadow, which both lie in the processor's memory.
+Booked& booked(Space space) {
+  static Booked of_host, of_shadow;
+  return space == Space::shadow ? of_shadow : of_host;
 }
+thread_local int clearing_threads = 1;
 
 }  // namespace
 
@@ -52,7 +60,7 @@ void* allocate(Space space, std::size_t bytes) {
   auto* block = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
   if (block == nullptr) throw std::bad_alloc();
   std::memcpy(block, &padded, sizeof padded);
-  book(padded);
+  booked(space).add(padded);
   return block + alignment;
 }
 
@@ -67,7 +75,7 @@ void release(Space space, void* memory) noexcept {
   auto* block = static_cast<std::byte*>(memory) - alignment;
   std::size_t padded = 0;
   std::memcpy(&padded, block, sizeof padded);
-  alive_bytes -= padded;
+  booked(space).alive -= padded;
   std::free(block);
 }
 
@@ -185,7 +193,7 @@ cudaMemPool_t pool_in_use() {
 }  // namespace
 #endif
 
-std::size_t peak_array_bytes([[maybe_unused]] Space space) {
+std::size_t peak_array_bytes(Space space) {
 #if defined(BR_CUDA)
   if (space == Space::cuda) {
     std::uint64_t bytes = 0;
@@ -194,10 +202,10 @@ std::size_t peak_array_bytes([[maybe_unused]] Space space) {
     return bytes;
   }
 #endif
-  return peak_bytes.load();
+  return booked(space).peak.load();
 }
 
-void forget_peak_of_arrays([[maybe_unused]] Space space) {
+void forget_peak_of_arrays(Space space) {
 #if defined(BR_CUDA)
   if (space == Space::cuda) {
     std::uint64_t none = 0;  // the driver goes on from what is alive
@@ -206,7 +214,7 @@ void forget_peak_of_arrays([[maybe_unused]] Space space) {
     return;
   }
 #endif
-  peak_bytes = alive_bytes.load();
+  booked(space).peak = booked(space).alive.load();
 }
 
 }  // namespace breccia

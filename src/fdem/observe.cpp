@@ -52,10 +52,11 @@ std::vector<Corners> velocities_now(World& w) {
 }
 
 std::vector<Crack> cracks(const World& w) {
-  const Joints j = host_copy(w.joints);
-  std::vector<TriangleNodes> nodes;
-  copy_to(nodes, w.triangles.nodes);
-  const auto corner = [&](Index n) { return nodes[at(n / 3)].at[n % 3].position; };
+  if (!fdem_shared::any_broken(w)) return {};
+  const OnHost<Joints> joints(w.joints, w.exec.space);
+  const Joints& j = *joints;
+  const OnHost nodes(w.triangles.nodes, w.exec.space);
+  const auto corner = [&](Index n) { return nodes->data()[n / 3].at[n % 3].position; };
   return fdem_shared::cracks_of<Crack>(j, [&](Index i, double work) {
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     return Crack{i,

@@ -4,6 +4,7 @@
 
 #include "core/on_host.hpp"
 #include "fdem_shared/emission.hpp"
+#include "fdem_shared/joint_stages.hpp"
 
 namespace breccia::fdem3 {
 namespace {
@@ -20,17 +21,21 @@ Vec3 slip_direction(const JointPlace& place, const JointOpening& o) {
 
 }  // namespace
 
-std::vector<EmissionEvent> emission(const World& w, const std::vector<JointPlace>& places) {
+JointPlace place_of(const Vec3 (&x)[3]) {
+  const Vec3 edge = x[1] - x[0], twice = cross(edge, x[2] - x[0]);
+  return {(1.0 / 3.0) * (x[0] + x[1] + x[2]), (1.0 / norm(twice)) * twice,
+          (1.0 / norm(edge)) * edge};
+}
+
+std::vector<EmissionEvent> emission(const World& w, const PlaceOfFace& place_at_start) {
+  if (!fdem_shared::any_broken(w)) return {};
   const OnHost<Joints> joints(w.joints, w.exec.space);
-  std::vector<TetrahedronNodes> nodes;
-  copy_to(nodes, w.tetrahedra.nodes);
-  std::vector<Index> material;
-  copy_to(material, w.tetrahedra.material);
-  std::vector<ElasticTetrahedron> laws;
-  copy_to(laws, w.given->laws);
+  const OnHost nodes(w.tetrahedra.nodes, w.exec.space);
+  const OnHost material(w.tetrahedra.material, w.exec.space);
+  const OnHost laws(w.given->laws, w.exec.space);
   const bool graded = w.given->in_situ.graded();
   const auto law_at = [&](Index face) {
-    return laws[at(graded ? face / 4 : material[at(face / 4)])];
+    return laws->data()[graded ? face / 4 : material->data()[face / 4]];
   };
   std::vector<Break> breaks;
   for (Index i = 0; i < joints->size(); ++i) {
@@ -41,13 +46,13 @@ std::vector<EmissionEvent> emission(const World& w, const std::vector<JointPlace
       opening += point.opening / 3.0;
       slip += point.slip / 3.0;
     }
-    const JointPlace& place = places[at(i)];
+    const JointPlace place = place_at_start(joints->face_b.data()[i]);
     const JointEnds e =
         JointEnds::of(joints->face_a.data()[i], joints->face_b.data()[i], joints->turn.data()[i]);
     Vec3 a[3], b[3];
     for (int k = 0; k < 3; ++k) {
-      a[k] = nodes[at(e.a[k] / 4)].at[e.a[k] % 4].position;
-      b[k] = nodes[at(e.b[k] / 4)].at[e.b[k] % 4].position;
+      a[k] = nodes->data()[e.a[k] / 4].at[e.a[k] % 4].position;
+      b[k] = nodes->data()[e.b[k] / 4].at[e.b[k] % 4].position;
     }
     const Vec3 along = slip_direction(place, opening_of(a, b));
     breaks.push_back(

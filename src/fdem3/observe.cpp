@@ -6,17 +6,17 @@
 namespace breccia::fdem3 {
 
 std::vector<Sym3> stresses(const World& w) {
-  const OnHost<Tetrahedra> elements(w.tetrahedra, w.exec.space);
-  const Tetrahedra& t = *elements;
-  std::vector<ElasticTetrahedron> laws;
-  copy_to(laws, w.given->laws);
+  const Tetrahedra& t = w.tetrahedra;
+  const OnHost laws(w.given->laws, w.exec.space);
+  const OnHost nodes(t.nodes, w.exec.space);
+  const OnHost shape(t.shape, w.exec.space);
+  const OnHost law(w.given->in_situ.graded() ? t.id : t.material, w.exec.space);
   std::vector<Sym3> all;
-  const Buffer<Index>& law = w.given->in_situ.graded() ? t.id : t.material;
   all.reserve(at(t.size()));
   for (Index i = 0; i < t.size(); ++i) {
     Vec3 x[4];
-    places(t.nodes.data()[i], x);
-    all.push_back(laws[at(law.data()[i])].stress(deformation(t.shape.data()[i], x)));
+    places(nodes->data()[i], x);
+    all.push_back(laws->data()[law->data()[i]].stress(deformation(shape->data()[i], x)));
   }
   return all;
 }
@@ -26,18 +26,16 @@ std::vector<Corners> velocities_now(World& w) {
 }
 
 std::vector<std::int32_t> visible_faces(const World& w) {
-  std::vector<FaceJoints> faces;
-  copy_to(faces, w.faces);
-  std::vector<JointStage> stage;
-  copy_to(stage, w.joints.stage);
+  const OnHost faces(w.faces, w.exec.space);
+  const OnHost stage(w.joints.stage, w.exec.space);
   const auto is_seen = [&](Index entry) {
     if (entry < 0) return entry == face_free;
-    const JointStage of = stage[at(pair_of(entry))];
+    const JointStage of = stage->data()[pair_of(entry)];
     return is_damaged(of) || is_parted(of);
   };
   std::vector<std::int32_t> all;
-  all.reserve(faces.size());
-  for (const FaceJoints& f : faces) {
+  all.reserve(at(faces->size()));
+  for (const FaceJoints& f : faces->host()) {
     std::int32_t bits = 0;
     for (int k = 0; k < 4; ++k)
       if (is_seen(f.at[k])) bits |= 1 << k;
@@ -47,15 +45,16 @@ std::vector<std::int32_t> visible_faces(const World& w) {
 }
 
 std::vector<Crack> cracks(const World& w) {
-  const Joints j = host_copy(w.joints);
-  std::vector<TetrahedronNodes> nodes;
-  copy_to(nodes, w.tetrahedra.nodes);
+  if (!fdem_shared::any_broken(w)) return {};
+  const OnHost<Joints> joints(w.joints, w.exec.space);
+  const Joints& j = *joints;
+  const OnHost nodes(w.tetrahedra.nodes, w.exec.space);
   return fdem_shared::cracks_of<Crack>(j, [&](Index i, double work) {
     const JointEnds e = JointEnds::of(j.face_a.data()[i], j.face_b.data()[i], j.turn.data()[i]);
     Vec3 a[3], b[3];
     for (int k = 0; k < 3; ++k) {
-      a[k] = nodes[at(e.a[k] / 4)].at[e.a[k] % 4].position;
-      b[k] = nodes[at(e.b[k] / 4)].at[e.b[k] % 4].position;
+      a[k] = nodes->data()[e.a[k] / 4].at[e.a[k] % 4].position;
+      b[k] = nodes->data()[e.b[k] / 4].at[e.b[k] % 4].position;
     }
     const JointOpening o = opening_of(a, b);
     return Crack{
@@ -72,32 +71,32 @@ Fragments fragments(const World& w) {
 Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
   const std::vector<std::uint8_t> gone = gone_tetrahedra(w);
   Pieces joined = fdem_shared::joined_elements(w, broken, gone);
-  const OnHost<Tetrahedra> elements(w.tetrahedra, w.exec.space);
-  const Tetrahedra& t = *elements;
-  std::vector<Piece> of_root(at(t.size()));
-  std::vector<double> mass(at(t.size()), 0.0);
-  for (Index i = 0; i < t.size(); ++i) {
+  const Index count = w.tetrahedra.size();
+  const OnHost masses(w.tetrahedra.mass, w.exec.space);
+  std::vector<double> mass(at(count), 0.0);
+  for (Index i = 0; i < count; ++i)
+    if (gone[at(i)] == 0) mass[at(joined.root(i))] += 4.0 * masses->data()[i];
+  fdem_shared::OrderedPieces ordered = fdem_shared::by_mass(joined, mass);
+  Fragments f;
+  f.of = std::move(ordered.of);
+  f.pieces.resize(ordered.root.size());
+  const OnHost nodes(w.tetrahedra.nodes, w.exec.space);
+  for (Index i = 0; i < count; ++i) {
     if (gone[at(i)] != 0) continue;
-    const Index root = joined.root(i);
-    Piece& p = of_root[at(root)];
-    const double corner = t.mass.data()[i];
+    Piece& p = f.pieces[at(f.of[at(i)])];
+    const double corner = masses->data()[i];
     Vec3 x[4], v[4];
-    split(t.nodes.data()[i], x, v);
-    mass[at(root)] = p.mass += 4.0 * corner;
+    split(nodes->data()[i], x, v);
+    p.mass += 4.0 * corner;
     p.volume += dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6.0;
     for (int k = 0; k < 4; ++k) {
       p.centre += corner * x[k];
       p.velocity += corner * v[k];
     }
   }
-  fdem_shared::OrderedPieces ordered = fdem_shared::by_mass(joined, mass);
-  Fragments f;
-  f.of = std::move(ordered.of);
-  for (const Index root : ordered.root) {
-    Piece p = of_root[at(root)];
+  for (Piece& p : f.pieces) {
     p.centre = (1.0 / p.mass) * p.centre;
     p.velocity = (1.0 / p.mass) * p.velocity;
-    f.pieces.push_back(p);
   }
   return f;
 }

@@ -11,6 +11,7 @@
 #include "core/state_hash.hpp"
 #include "domain/owned.hpp"
 #include "fdem_shared/bundle_steps.hpp"
+#include "fdem_shared/joint_stages.hpp"
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -173,6 +174,7 @@ template <class World>
 std::vector<double> damage(const World& w) {
   using Shape = ShapeOf<World>;
   std::vector<double> worst(at(Shape::elements(w).size()), 0.0);
+  if (!any_damaged(w)) return worst;
   const OnHost joints(w.joints, w.exec.space);
   const auto& j = *joints;
   using Stage = std::remove_cvref_t<decltype(j.stage.data()[0])>;
@@ -222,20 +224,20 @@ Pieces joined_elements(const World& w, const std::vector<std::uint8_t>& broken,
                        const std::vector<std::uint8_t>& gone) {
   using Shape = ShapeOf<World>;
   constexpr Index corners = Shape::corners;
-  std::vector<Index> side_a, side_b;
-  copy_to(side_a, Shape::side_a(w.joints));
-  copy_to(side_b, Shape::side_b(w.joints));
-  std::vector<typename Shape::Sides> sides;
-  copy_to(sides, Shape::sides(w));
   const auto stays = [&](Index t) { return gone.empty() || gone[at(t)] == 0; };
-  Pieces pieces(sides.size());
-  for (std::size_t i = 0; i < broken.size(); ++i) {
-    const Index a = side_a[i] / corners, b = side_b[i] / corners;
-    if (broken[i] == 0 && stays(a) && stays(b)) pieces.join(a, b);
+  Pieces pieces(at(Shape::sides(w).size()));
+  {
+    const OnHost side_a(Shape::side_a(w.joints), w.exec.space),
+        side_b(Shape::side_b(w.joints), w.exec.space);
+    for (std::size_t i = 0; i < broken.size(); ++i) {
+      const Index a = side_a->host()[i] / corners, b = side_b->host()[i] / corners;
+      if (broken[i] == 0 && stays(a) && stays(b)) pieces.join(a, b);
+    }
   }
+  const OnHost sides(Shape::sides(w), w.exec.space);
   for (std::size_t side = 0; side < w.across.size(); ++side) {
     const auto t = static_cast<Index>(side) / corners;
-    if (sides[at(t)].at[static_cast<Index>(side) % corners] == Shape::side_bonded)
+    if (sides->data()[t].at[static_cast<Index>(side) % corners] == Shape::side_bonded)
       pieces.join(t, w.across[side] / corners);
   }
   return pieces;

@@ -20,26 +20,41 @@
 
 namespace breccia::fdem_shared {
 
-/// Distance along an axis from all corners of one element to all of the other. Below zero where
-/// they overlap along it, and for an axis without length.  [m]
+/// Corners of two elements as axes see them: from corner 0 of the first, so that places far out
+/// lose no digits.
 template <class Vector, int corners>
-BR_HD double gap_along(const Vector& axis, const Vector (&a)[corners], const Vector (&b)[corners]) {
-  const double size = norm(axis);
-  if (!(size > 0.0)) return -1.0;
-  double low_a = 0.0, high_a = 0.0;  // from corner 0 of a, so that places far out lose no digits
-  double low_b = dot(axis, b[0] - a[0]), high_b = low_b;
-  for (int k = 1; k < corners; ++k) {
-    const double of_a = dot(axis, a[k] - a[0]), of_b = dot(axis, b[k] - a[0]);
-    low_a = min(low_a, of_a);
-    high_a = max(high_a, of_a);
-    low_b = min(low_b, of_b);
-    high_b = max(high_b, of_b);
+struct CornersApart {
+  Vector of_a[corners], of_b[corners];  ///< [m]; of_a[0] is zero
+  double distance;                      ///< above 0  [m]
+
+  BR_HD CornersApart(const Vector (&a)[corners], const Vector (&b)[corners], double wanted)
+      : distance(wanted) {
+    for (int k = 0; k < corners; ++k) {
+      of_a[k] = a[k] - a[0];
+      of_b[k] = b[k] - a[0];
+    }
   }
-  return max(low_b - high_a, low_a - high_b) / size;
-}
+  /// Whether all corners of one are further than the distance from all of the other along an axis.
+  BR_HD bool along(const Vector& axis) const {
+    double low_a = 0.0, high_a = 0.0;
+    double low_b = dot(axis, of_b[0]), high_b = low_b;
+    for (int k = 1; k < corners; ++k) {
+      const double in_a = dot(axis, of_a[k]), in_b = dot(axis, of_b[k]);
+      low_a = min(low_a, in_a);
+      high_a = max(high_a, in_a);
+      low_b = min(low_b, in_b);
+      high_b = max(high_b, in_b);
+    }
+    const double gap = max(low_b - high_a, low_a - high_b);  // times the length of the axis
+    if (!(gap > 0.0)) return false;
+    const double size = norm(axis);
+    return size > 0.0 && gap / size > distance;
+  }
+};
 
 /// Whether tetrahedra are further apart than a distance; as far as the axes of sides and of pairs
 /// of edges tell.
+/// @param distance  above 0  [m]
 BR_HD inline bool are_separated(const Vec3 (&a)[4], const Vec3 (&b)[4], double distance) {
   Vec3 edge_a[6], edge_b[6];
   int count = 0;
@@ -49,14 +64,24 @@ BR_HD inline bool are_separated(const Vec3 (&a)[4], const Vec3 (&b)[4], double d
       edge_b[count] = b[m] - b[k];
       ++count;
     }
+  const CornersApart<Vec3, 4> corners(a, b, distance);
   constexpr int side[4][2] = {{0, 1}, {0, 2}, {1, 2}, {3, 4}};  // edges of each
   for (const auto& [first, second] : side)
-    if (gap_along(cross(edge_a[first], edge_a[second]), a, b) > distance ||
-        gap_along(cross(edge_b[first], edge_b[second]), a, b) > distance)
+    if (corners.along(cross(edge_a[first], edge_a[second])) ||
+        corners.along(cross(edge_b[first], edge_b[second])))
       return true;
   for (const Vec3& of_a : edge_a)
     for (const Vec3& of_b : edge_b)
-      if (gap_along(cross(of_a, of_b), a, b) > distance) return true;
+      if (corners.along(cross(of_a, of_b))) return true;
+  return false;
+}
+
+/// Whether a corner of one element is no further from one of the other than a way.
+template <class Vector, int corners>
+BR_HD bool corners_within(const Vector (&a)[corners], const Vector (&b)[corners], double way) {
+  for (const Vector& of_a : a)
+    for (const Vector& of_b : b)
+      if (dot(of_b - of_a, of_b - of_a) <= way * way) return true;
   return false;
 }
 
@@ -90,6 +115,8 @@ struct MayBeNear {
 
   BR_HD bool operator()(Index i) const {
     const Index p = place[a[i]], q = place[b[i]];
+    // No axis has corners further apart than they are: what was joined is known without axes.
+    if (corners_within(reference[p].at, reference[q].at, margin[p] + margin[q])) return true;
     const double near = Shape::near(shape[a[i]]) + Shape::near(shape[b[i]]);
     if (!stay_apart(reference[p].at, reference[q].at, margin[p] + margin[q] + near)) return true;
     const Index at = lower_bound(last_key.data, 0, last_key.size, key[i]);

@@ -81,15 +81,15 @@ bool is_checkpoint(const std::string& path) {
 
 void CheckpointWriter::section(const std::string& name, const void* items, std::size_t count,
                                std::size_t item_bytes, Space space) {
-  Section section{name, std::vector<std::byte>(count * item_bytes), count, item_bytes};
-  copy_bytes(section.bytes.data(), Space::host, items, space, section.bytes.size());
+  Section section{name, std::vector<std::byte>(count * item_bytes), {}, count, item_bytes};
+  copy_bytes(section.own.data(), Space::host, items, space, section.own.size());
   sections_.push_back(std::move(section));
 }
 
-void CheckpointWriter::adopt(const std::string& prefix, const CheckpointWriter& other) {
-  for (const Section& s : other.sections_) {
-    sections_.push_back(s);
-    sections_.back().name = prefix + s.name;
+void CheckpointWriter::adopt(const std::string& prefix, CheckpointWriter other) {
+  for (Section& s : other.sections_) {
+    s.name = prefix + s.name;
+    sections_.push_back(std::move(s));
   }
 }
 
@@ -99,11 +99,11 @@ std::string CheckpointWriter::first_difference(const CheckpointWriter& other) co
     const Section &here = sections_[k], &there = other.sections_[k];
     if (here.name != there.name || here.count != there.count)
       return fmt::format("the length of {}", here.name);
-    const auto at = std::mismatch(here.bytes.begin(), here.bytes.end(), there.bytes.begin()).first;
-    if (at != here.bytes.end())
+    const Bytes one = here.bytes(), other_one = there.bytes();
+    const auto at = std::mismatch(one.begin(), one.end(), other_one.begin()).first;
+    if (at != one.end())
       return fmt::format("{}, item {} of {}", here.name,
-                         static_cast<std::size_t>(at - here.bytes.begin()) / here.item_bytes,
-                         here.count);
+                         static_cast<std::size_t>(at - one.begin()) / here.item_bytes, here.count);
   }
   return {};
 }
@@ -113,7 +113,7 @@ std::map<std::string, Digest> CheckpointWriter::digests(
   std::map<std::string, Digest> found;
   for (const Section& s : sections_)
     if (std::find(names.begin(), names.end(), s.name) != names.end())
-      found.emplace(s.name, digest(s.bytes));
+      found.emplace(s.name, digest(s.bytes()));
   return found;
 }
 
@@ -128,8 +128,8 @@ void CheckpointWriter::write(const std::string& path) const {
     append_item(table, s.count);
     append_item(table, s.item_bytes);
     append_item(table, offset);
-    append_item(table, digest(s.bytes));
-    offset += s.bytes.size();
+    append_item(table, digest(s.bytes()));
+    offset += s.bytes().size();
   }
   std::vector<std::byte> head;
   append_item(head, magic);
@@ -140,7 +140,7 @@ void CheckpointWriter::write(const std::string& path) const {
   append_item(head, digest(table));
 
   std::vector<Bytes> pieces{head, table};
-  for (const Section& s : sections_) pieces.emplace_back(s.bytes);
+  for (const Section& s : sections_) pieces.push_back(s.bytes());
   RunningDigest whole;
   for (const Bytes piece : pieces) whole.add(piece);
   std::vector<std::byte> foot;
@@ -234,7 +234,7 @@ CheckpointReader::CheckpointReader(const std::string& path) : path_(path) {
 
 CheckpointReader::CheckpointReader(const CheckpointWriter& held) : path_("a state in memory") {
   for (const CheckpointWriter::Section& s : held.sections_)
-    sections_.push_back({s.name, s.count, s.item_bytes, s.bytes});
+    sections_.push_back({s.name, s.count, s.item_bytes, s.bytes()});
 }
 
 CheckpointReader CheckpointReader::below(const std::string& prefix) const {

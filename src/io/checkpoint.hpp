@@ -18,6 +18,12 @@ namespace breccia {
 /// Collects the sections of a checkpoint and writes them at once.
 class CheckpointWriter {
  public:
+  /// What becomes of arrays of the host. copied: they may change. left: they stay as they are, and
+  /// where they are, until the writer has written; it holds no copy of them.
+  enum class Arrays : std::uint8_t { copied, left };
+  explicit CheckpointWriter(Arrays arrays = Arrays::copied) : arrays_(arrays) {}
+  Arrays arrays() const { return arrays_; }
+
   /// A section of `count` items of `item_bytes` each; the bytes are copied.
   void section(const std::string& name, const void* items, std::size_t count,
                std::size_t item_bytes, Space space = Space::host);
@@ -45,7 +51,7 @@ class CheckpointWriter {
   }
 
   /// All sections of another writer, as PREFIX<section>.
-  void adopt(const std::string& prefix, const CheckpointWriter& other);
+  void adopt(const std::string& prefix, CheckpointWriter other);
 
   /// Where two states that were collected alike differ first, as "elements.force, item 7 of 20";
   /// empty: nowhere.
@@ -60,7 +66,11 @@ class CheckpointWriter {
  private:
   template <class T>
   void write_array(const std::string& name, const Buffer<T>& array) {
-    section(name, array.data(), static_cast<std::size_t>(array.size()), sizeof(T), array.space());
+    const auto count = static_cast<std::size_t>(array.size());
+    if (arrays_ == Arrays::left && array.space() == Space::host)
+      sections_.push_back({name, {}, std::as_bytes(array.host()), count, sizeof(T)});
+    else
+      section(name, array.data(), count, sizeof(T), array.space());
   }
   template <class Number>
   void write_array(const std::string& name, const PlanesOf<Number>& array) {
@@ -72,7 +82,7 @@ class CheckpointWriter {
     Buffer<Index> items;
     Buffer<T> records;
     host.list(items, records);
-    write_array(prefix + "." + name, items);
+    section(prefix + "." + name, items.data(), at(items.size()), sizeof(Index));
     T::each_member([&](const char* member, const char*, auto of) {
       std::vector<std::remove_cvref_t<decltype(records.data()->*of)>> values;
       for (const T& record : records.host()) values.push_back(record.*of);
@@ -82,10 +92,14 @@ class CheckpointWriter {
 
   struct Section {
     std::string name;
-    std::vector<std::byte> bytes;
+    std::vector<std::byte> own;  ///< copied bytes
+    Bytes left;                  ///< where none are: an array that is left where it is
     std::uint64_t count = 0;
     std::uint64_t item_bytes = 0;
+
+    Bytes bytes() const { return own.empty() ? left : Bytes(own); }
   };
+  Arrays arrays_;
   std::vector<Section> sections_;
   friend class CheckpointReader;
 };

@@ -171,7 +171,7 @@ int Run::advance() {
     const Decision decision = decide(spent);
     steps_at_once_ = decision.steps_at_once;
     if (decision.signal != 0) return decision.signal;
-    if (decision.save != 0) save_checkpoint();
+    if (decision.save != 0) save_checkpoint(Then::steps);
     if (decision.count != 0) count_broken();
     if (decision.show != 0) progress_.show(standing(), Clock::now());
   }
@@ -229,7 +229,7 @@ void Run::observe() {
 }
 
 CheckpointWriter Run::record_state() const {
-  CheckpointWriter writer;
+  CheckpointWriter writer(CheckpointWriter::Arrays::left);  // it is written before the next step
   writer.value("run.step", method_.steps());
   writer.value("run.time", method_.time());
   writer.value("run.dt_min", dt_min_);
@@ -247,7 +247,7 @@ CheckpointWriter Run::record_state() const {
   return writer;
 }
 
-void Run::save_checkpoint() {
+void Run::save_checkpoint(Then then) {
   if (checkpoints_.last_step() == method_.steps()) return;
   const Clock::time_point begin = Clock::now();
   const OutputTime time(plan_.timers, output_);
@@ -260,7 +260,7 @@ void Run::save_checkpoint() {
     recorder_.sync();
     log_->write(Level::info, "checkpoint", step, path);
   });
-  if (const std::shared_ptr<Method> later = method_.snapshot()) {
+  if (const std::shared_ptr<Method> later = snapshot_of(method_, then)) {
     background_.add([this, later, state, step] {
       later->save(*state);
       checkpoints_.write(step, *state);
@@ -286,7 +286,7 @@ bool Run::out_of_time() const {
 }
 
 int Run::interrupted(int cause) {
-  save_checkpoint();
+  save_checkpoint(Then::end);
   background_.finish();
   Summary now = summary();
   now.energy = method_.energy();
@@ -305,7 +305,7 @@ int Run::interrupted(int cause) {
 }
 
 int Run::done() {
-  save_checkpoint();
+  save_checkpoint(Then::end);
   {
     const OutputTime time(plan_.timers, output_);
     recorder_.record_last(method_, background_);

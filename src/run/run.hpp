@@ -108,7 +108,7 @@ class Run {
     const double by_steps = static_cast<double>(method_.steps()) / static_cast<double>(end_steps_);
     return std::clamp(std::max(by_time, by_steps), 0.0, 1.0);
   }
-  void save_checkpoint();
+  void save_checkpoint(Then then);
   /// All of a checkpoint but the method's own.
   CheckpointWriter record_state() const;
   int interrupted(int cause);

@@ -29,6 +29,9 @@ using Corners = CornerVectors<double>;
 /// it, in brackets, in the words of World. Constant: written by set-up; all of it moves with its
 /// triangle between ranks.
 struct Triangles {
+  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  static constexpr bool is_arrays_alone = true;
+
   Buffer<GlobalId> id;          ///< number of the triangle, kept for ever  [-]  (constant)
   Buffer<std::int16_t> group;   ///< body it belongs to  [-]  (constant)
   Buffer<Index> material;       ///< index into the case's materials  [-]  (constant)

@@ -270,10 +270,11 @@ struct CoupleForces {
   /// Whether no face of either has the other one on its outer side. Makes targets of both.
   BR_HD static bool meet(Partner& a, Partner& b) {
     a.target = Target::of(a.x);
-    b.target = Target::of(b.x);
-    if (!a.has_volume() || !b.has_volume()) return false;
+    if (!a.has_volume()) return false;
     b.in_other = CornersInside::of(b.x, a.target);
     if (b.in_other.beyond_a_face()) return false;
+    b.target = Target::of(b.x);
+    if (!b.has_volume()) return false;
     a.in_other = CornersInside::of(a.x, b.target);
     if (a.in_other.beyond_a_face()) return false;
     a.target.measure_heights();

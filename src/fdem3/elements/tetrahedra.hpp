@@ -36,6 +36,9 @@ BR_HD constexpr int corner_of_face(int face, int place) {
 /// brackets, in the words of World. Constant: written by set-up; all of it moves with its
 /// tetrahedron between ranks.
 struct Tetrahedra {
+  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  static constexpr bool is_arrays_alone = true;
+
   Buffer<GlobalId> id;             ///< number, kept for ever  [-]  (constant)
   Buffer<std::int16_t> group;      ///< body it belongs to  [-]  (constant)
   Buffer<Index> material;          ///< index into the case's materials  [-]  (constant)

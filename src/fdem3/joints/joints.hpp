@@ -78,6 +78,9 @@ struct JointFailure {
 /// the middles of the edges (0, 1), (1, 2), (2, 0) of the face, a third of its area each. One item
 /// for each joint. Who writes it: as of Tetrahedra.
 struct Joints {
+  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  static constexpr bool is_arrays_alone = true;
+
   Buffer<Index> face_a, face_b;     ///< the two faces that it joins  [-]  (set-up, ranks)
   Buffer<std::uint8_t> turn;        ///< see JointEnds  [-]  (constant)
   Buffer<Index> law;                ///< index into Case::bonds  [-]  (constant)

@@ -26,13 +26,14 @@ Extent nearer(const Extent& whole, const Extent& cut, const Axes& axes,
 
 }  // namespace
 
-AsDrawn::AsDrawn(const Frame& whole, const RenderOptions& wanted) : frame(whole), options(wanted) {
-  if (options.scale != 1.0) frame = displaced(frame, options.scale);
-  if (!options.extent) options.extent = bulk_extent(frame);
-  if (!options.hidden.empty()) frame = without_groups(frame, options.hidden);
+AsDrawn::AsDrawn(const Frame& whole, const RenderOptions& wanted)
+    : options(wanted), whole_(&whole) {
+  if (options.scale != 1.0) changed_ = displaced(whole, options.scale);
+  if (!options.extent) options.extent = bulk_extent(frame());
+  if (!options.hidden.empty()) changed_ = without_groups(frame(), options.hidden);
   options.scale = 1.0;
   options.hidden.clear();
-  if (options.height == 0) options.height = picture_height(frame, options);
+  if (options.height == 0) options.height = picture_height(frame(), options);
 }
 
 Layout::Layout(const Frame& frame, const RenderOptions& options)

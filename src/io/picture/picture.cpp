@@ -209,7 +209,7 @@ std::int64_t covered(const Canvas& canvas) {
 /// Whether the point of a frame is on the surface that shows: a sphere may stand half a radius
 /// behind what its neighbours show, a corner of a solid a few pixels.
 bool is_seen(const Canvas& canvas, const Frame& frame, const Scene& scene, std::size_t point) {
-  const ScreenPoint& p = scene.points[point];
+  const ScreenPoint p = scene.point(point);
   if (scene.clip && scene.clip->beyond(p.u, p.v, p.depth) > 0.0) return false;
   if (frame.radius.empty() && frame.tetrahedra.empty()) return true;
   if (!(p.u >= 0.0 && p.v >= 0.0 && p.u < canvas.width && p.v < canvas.height)) return false;
@@ -226,17 +226,17 @@ Image render_on(const Frame& frame, const RenderOptions& options, int threads,
   const Coloring& coloring = layout.coloring;
   const int fine = fineness(frame, options);
   const Camera camera = layout.camera(options);
-  Scene scene{camera, std::nullopt, {}, {}, {}};
+  Scene scene{camera, std::nullopt, &frame.position, {}, {}};
   scene.camera.u *= fine;
   scene.camera.v *= fine;
   scene.camera.resolution *= fine;
   if (const std::optional<Clip> clip = clip_of(options.clip, layout.axes))
     scene.clip = on_screen(*clip, scene.camera);
-  scene.points.resize(frame.position.size());
-  for_chunks(threads, scene.points.size(),
-             [&](std::size_t i) { scene.points[i] = scene.camera.project(frame.position[i]); });
-  scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
-  for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
+  if (!frame.radius.empty()) {
+    scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 +
+                        frame.triangles.size() / 3);
+    for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
+  }
 
   Canvas canvas(fine * options.width, fine * options.height);
   Image image = draw_items(canvas, frame, options, coloring, scene, threads, ground);
@@ -289,7 +289,7 @@ Image render(const Frame& frame, const RenderOptions& options, int threads) {
     throw InputError("forces of contacts are drawn where they act: scale must be 1 with them");
   if (options.scale != 1.0 || !options.hidden.empty() || options.height == 0) {
     const AsDrawn drawn(frame, options);
-    return render(drawn.frame, drawn.options, threads);
+    return render(drawn.frame(), drawn.options, threads);
   }
   Image image = render_on(frame, options, threads, white_byte);
   if (options.transparent)

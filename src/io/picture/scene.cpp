@@ -12,7 +12,7 @@ void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scen
   constexpr double smallest = 0.75;  // pixels: nothing that flies about is lost
   std::vector<ScreenSphere> spheres(frame.position.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const ScreenPoint& point = scene.points[i];
+    const ScreenPoint point = scene.point(i);
     if (is_paired(frame) && !(frame.radius[i] > 0.0)) {  // a corner of a body: far off the canvas
       spheres[i] = {-1e9F, -1e9F, 0.0F, 0.0F};
       continue;
@@ -39,8 +39,8 @@ void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Sc
   const std::size_t first = scene.looks.size();
   Bands bands(canvas, threads);
   const auto ends = [&](std::size_t line) {
-    ScreenPoint a = scene.points[static_cast<std::size_t>(frame.lines[2 * line])];
-    ScreenPoint b = scene.points[static_cast<std::size_t>(frame.lines[2 * line + 1])];
+    ScreenPoint a = scene.point(static_cast<std::size_t>(frame.lines[2 * line]));
+    ScreenPoint b = scene.point(static_cast<std::size_t>(frame.lines[2 * line + 1]));
     a.depth += lift;
     b.depth += lift;
     return std::pair{a, b};
@@ -71,7 +71,7 @@ void draw_triangles(Canvas& canvas, const Frame& frame, const std::vector<Color>
   Bands bands(canvas, threads);
   const auto corners = [&](std::size_t triangle) {
     const auto corner = [&](std::size_t k) {
-      return scene.points[static_cast<std::size_t>(frame.triangles[3 * triangle + k])];
+      return scene.point(static_cast<std::size_t>(frame.triangles[3 * triangle + k]));
     };
     return std::array{corner(0), corner(1), corner(2)};
   };

@@ -16,9 +16,11 @@ namespace breccia {
 struct Scene {
   Camera camera;
   std::optional<ScreenClip> clip;
-  std::vector<ScreenPoint> points;
+  const std::vector<Vec3>* points;  ///< of the frame  [m]
   std::vector<ItemLook> looks;
   std::vector<bool> solids_seen = {};  ///< tetrahedra that show; known once they are drawn
+
+  ScreenPoint point(std::size_t i) const { return camera.project((*points)[i]); }
 };
 
 /// work(i) for every i in [0, count), a few thousand by one thread at a time.

@@ -42,7 +42,7 @@ double beyond_of(const ScreenPoint& p, const ScreenClip& clip) {
 std::array<ScreenPoint, 4> corners_of(const Frame& frame, const Scene& scene, std::size_t t) {
   std::array<ScreenPoint, 4> corners;
   for (std::size_t k = 0; k < 4; ++k)
-    corners[k] = scene.points[static_cast<std::size_t>(frame.tetrahedra[4 * t + k])];
+    corners[k] = scene.point(static_cast<std::size_t>(frame.tetrahedra[4 * t + k]));
   return corners;
 }
 
@@ -93,7 +93,7 @@ std::vector<Mark> marks_of_joints(const Canvas& canvas, const Frame& frame,
     scene.looks.push_back({coloring.lines[joint], {}});
     std::array<ScreenPoint, 3> p;
     for (std::size_t k = 0; k < 3; ++k)
-      p[k] = scene.points[static_cast<std::size_t>(frame.triangles[3 * joint + k])];
+      p[k] = scene.point(static_cast<std::size_t>(frame.triangles[3 * joint + k]));
     std::vector<ScreenPoint> cut;
     for (std::size_t k = 0; k < 3; ++k) {
       const ScreenPoint &a = p[k], &b = p[(k + 1) % 3];

@@ -242,7 +242,7 @@ AsDrawn plane_drawing(const Frame& frame, const RenderOptions& options) {
 }
 
 std::string drawn(const AsDrawn& drawing, Page& page, const std::string& about) {
-  const Frame& frame = drawing.frame;
+  const Frame& frame = drawing.frame();
   const RenderOptions& options = drawing.options;
   const Layout layout(frame, options);
   const Coloring& coloring = layout.coloring;

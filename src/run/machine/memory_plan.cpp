@@ -99,7 +99,8 @@ double tetrahedra_of(const fdem3::BodyConfig& body) {
 }
 
 // Measured peaks: 50,000 and 200,000 packed elements with 6 links each, 64,000 and 257,000
-// triangles with 1.5 joints each; per item the same for both sizes to 3 %.
+// triangles with 1.5 joints each, per item the same for both sizes to 3 %; 511,104 tetrahedra
+// with 2.
 MemoryPlan memory_plan(const dem::Config& config) {
   constexpr double build = 640.0, linked = 2400.0, loose = 1000.0;  // bytes of an element
   MemoryPlan plan{.items = 0.0, .kind = "elements"};
@@ -130,10 +131,15 @@ MemoryPlan memory_plan(const fdem::Config& config) {
 }
 
 MemoryPlan memory_plan(const fdem3::Config& config) {
-  constexpr double build = 900.0, run = 2600.0;  // bytes of a tetrahedron with two joints
+  // Bytes of a tetrahedron with two joints: of a mesh of cubes, of one by gmsh with that program
+  // beside it, and of a run that draws pictures.
+  constexpr double cubes = 350.0, free = 900.0, run = 1600.0;
   MemoryPlan plan{.items = 0.0, .kind = "tetrahedra"};
-  for (const fdem3::BodyConfig& body : config.bodies) plan.items += tetrahedra_of(body);
-  plan.build_bytes = build * plan.items;
+  for (const fdem3::BodyConfig& body : config.bodies) {
+    const double count = tetrahedra_of(body);
+    plan.items += count;
+    plan.build_bytes += (body.structured ? cubes : free) * count;
+  }
   plan.run_bytes = run * plan.items;
   return plan;
 }

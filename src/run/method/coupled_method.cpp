@@ -185,9 +185,9 @@ class CoupledMethod final : public Method {
 
   void save(CheckpointWriter& writer) override {
     each_part([&](const std::string& part, Method& method) {
-      CheckpointWriter own;
+      CheckpointWriter own(writer.arrays());
       method.save(own);
-      writer.adopt(part, own);
+      writer.adopt(part, std::move(own));
     });
     each_stored([&](const std::string& name, auto& value) { writer.value(name, value); },
                 [&](const std::string& name, auto& state) { writer.fields(name, state); });

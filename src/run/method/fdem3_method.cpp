@@ -15,21 +15,20 @@ namespace breccia {
 namespace {
 
 struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
-  std::vector<fdem3::JointPlace> places;  ///< of all joints at the start; on rank 0
+  std::vector<Vec3> points;  ///< vertices at the start  [m]
 
-  Fdem3Sim(const fdem3::Model& model, const World& mesh) {
-    std::vector<Index> faces;
-    copy_to(faces, mesh.joints.face_b);
-    for (const Index face : faces) {
-      const auto& tetrahedron = model.tetrahedron[at(face / 4)];
-      const auto point = [&](int k) {
-        return model.point[at(tetrahedron[at(fdem3::corner_of_face(face % 4, k))])];
-      };
-      const Vec3 twice = cross(point(1) - point(0), point(2) - point(0));
-      const Vec3 edge = point(1) - point(0);
-      places.push_back({(1.0 / 3.0) * (point(0) + point(1) + point(2)), (1.0 / norm(twice)) * twice,
-                        (1.0 / norm(edge)) * edge});
-    }
+  Fdem3Sim(const fdem3::Model& model, const World&) : points(model.point) {}
+
+  /// A joint of the whole mesh at the start.
+  /// @param face  its face on side b
+  fdem3::JointPlace place_at_start(const World& whole, Index face) const {
+    Vec3 x[3];
+    for (int k = 0; k < 3; ++k)
+      x[k] = points[at(whole.vertex[at(4 * (face / 4) + fdem3::corner_of_face(face % 4, k))])];
+    return fdem3::place_of(x);
+  }
+  std::vector<EmissionEvent> emission(const World& whole) const {
+    return fdem3::emission(whole, [&](Index face) { return place_at_start(whole, face); });
   }
 
   static FramePart frame(World& w, const World* mesh) { return fdem3_frame(w, mesh); }
@@ -38,7 +37,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
     add_cracks(w, facts);
     add_fluids(w, facts);
     add_bolt_findings(w, facts);
-    add_emission(facts, fdem3::emission(w, places));
+    add_emission(facts, emission(w));
     std::vector<double> mass;
     for (const fdem3::Piece& piece : fdem3::fragments(w).pieces) mass.push_back(piece.mass);
     add_fragments(mass, facts);
@@ -50,8 +49,12 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
         {"time", "x", "y", "z", "area", "mode", "energy", "x0", "y0", "z0", "nx0", "ny0", "nz0"},
         {"s", "m", "m", "m", "m2", "-", "J", "m", "m", "m", "-", "-", "-"},
         {}};
-    for (const fdem3::Crack& c : fdem3::cracks(w)) {
-      const Vec3 &m = places[at(c.joint)].middle, &n = places[at(c.joint)].normal;
+    const std::vector<fdem3::Crack> all_cracks = fdem3::cracks(w);
+    std::vector<Index> face_b;
+    if (!all_cracks.empty()) copy_to(face_b, w.joints.face_b);
+    for (const fdem3::Crack& c : all_cracks) {
+      const fdem3::JointPlace place = place_at_start(w, face_b[at(c.joint)]);
+      const Vec3 &m = place.middle, &n = place.normal;
       cracks.rows.push_back({c.time, c.middle.x, c.middle.y, c.middle.z, c.area, c.mode, c.energy,
                              m.x, m.y, m.z, n.x, n.y, n.z});
     }
@@ -68,7 +71,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
                              p.centre.y, p.centre.z, p.velocity.x, p.velocity.y, p.velocity.z});
       number += 1.0;
     }
-    std::vector<Table> tables{cracks, pieces, table_of(fdem3::emission(w, places))};
+    std::vector<Table> tables{cracks, pieces, table_of(emission(w))};
     add_bolt_table(w, tables);
     return tables;
   }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/rare_array.hpp"
 #include "core/step_clock.hpp"
 #include "domain/domain.hpp"
 #include "exec/device.hpp"
@@ -35,12 +36,14 @@ class SharedWorld {
   }
 
   /// Makes a copy of something that holds this, where that may be looked at while this one goes on:
-  /// on a device, alone, with memory left. Otherwise null.
+  /// on a device, alone, with memory left: for the copy, and a quarter of that for the searches of
+  /// this one meanwhile. Otherwise null.
   template <class Copy>
-  auto apart(const Copy& copy) const -> decltype(copy()) {
+  auto apart(const Copy& copy) -> decltype(copy()) {
     if (ranks_ != nullptr || space_ == Space::host) return nullptr;
     try {
       auto made = copy();
+      release(space_, allocate(space_, bytes_kept() / 4));
       wait_for_device();
       return made;
     } catch (const std::bad_alloc&) {
@@ -137,6 +140,18 @@ class SharedWorld {
   }
 
  private:
+  std::size_t bytes_kept() {
+    std::size_t bytes = 0;
+    whole_.each_kept([&](const auto& array) {
+      using Array = std::remove_cvref_t<decltype(array)>;
+      if constexpr (is_rare<Array>)
+        bytes += at(array.size()) * sizeof(Index) +
+                 at(array.records()) * sizeof(typename Array::value_type);
+      else if constexpr (requires { array.size() * sizeof(typename Array::value_type); })
+        bytes += at(array.size()) * sizeof(typename Array::value_type);
+    });
+    return bytes;
+  }
   template <class Make>
   static World made(const Make& make, Exec exec, Communicator* ranks, const DomainConfig& config) {
     if (ranks != nullptr) ranks->set_patience(config.patience);

@@ -205,7 +205,7 @@ void Recorder::record(Method& method, Background& background) {
     state_.row_step = method.steps();
   }
   if (time >= frames_.next()) {
-    if (wants_frames()) write_frame(method, background);
+    if (wants_frames()) write_frame(method, Then::steps, background);
     frames_.pass(time);
     state_.frame_step = method.steps();
     state_.frame_time = time;
@@ -228,7 +228,7 @@ void Recorder::write_picture_of_step(Method& method) {
 void Recorder::record_last(Method& method, Background& background) {
   if (state_.row_step != method.steps()) write_row(method);
   if (wants_frames() && config_.output.frames > 0 && state_.frame_step != method.steps())
-    write_frame(method, background);
+    write_frame(method, Then::end, background);
 }
 
 void Recorder::judge_end(Method& method, const EnergyBalance& energy) const {
@@ -267,13 +267,13 @@ void Recorder::write_row(Method& method) {
   });
 }
 
-void Recorder::write_frame(Method& method, Background& background) {
+void Recorder::write_frame(Method& method, Then then, Background& background) {
   background.finish();
   const std::int64_t number = frame_count_;
   const PictureMoment moment = moment_of(method);
   std::shared_ptr<Method> later;
   if (state_.extent || !config_.output.pictures)  // else it belongs to the record's state
-    later = method.snapshot();
+    later = snapshot_of(method, then);
   if (later != nullptr)
     background.add([this, later, number, moment] { write_frame_of(*later, number, moment); });
   else

@@ -102,7 +102,7 @@ class Recorder {
   template <class Work>
   void naming_fastest(Method& method, const Work& work) const;
   void write_row(Method& method);
-  void write_frame(Method& method, Background& background);
+  void write_frame(Method& method, Then then, Background& background);
   void write_frame_of(Method& method, std::int64_t number, const PictureMoment& moment);
   void write_picture_of_step(Method& method);
   RenderOptions picture_options() const;

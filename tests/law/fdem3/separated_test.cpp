@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/random.hpp"
@@ -114,6 +115,77 @@ TEST(Separated, pairs_left_out_stay_apart_within_their_margins_wherever_these_le
   EXPECT_GT(left_out, 300);
   EXPECT_GT(left_out - far, 30);  // near their margins, too
   EXPECT_GT(met, 200);
+}
+
+/// All axes one after the other, each with its own differences.
+bool separated_by_any_axis(const Vec3 (&a)[4], const Vec3 (&b)[4], double distance) {
+  const auto along = [&](const Vec3& axis) {
+    const double size = norm(axis);
+    if (!(size > 0.0)) return false;
+    double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
+    for (int k = 0; k < 4; ++k)
+      for (int side = 0; side < 2; ++side) {
+        const double at = dot(axis, (side == 0 ? a : b)[k] - a[0]);
+        low[side] = std::min(low[side], at);
+        high[side] = std::max(high[side], at);
+      }
+    return std::max(low[1] - high[0], low[0] - high[1]) / size > distance;
+  };
+  for (int f = 0; f < 4; ++f)
+    for (const auto& x : {&a, &b}) {
+      const auto corner = [&](int k) { return (*x)[corner_of_face(f, k)]; };
+      if (along(cross(corner(1) - corner(0), corner(2) - corner(0)))) return true;
+    }
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j)
+      for (int k = 0; k < 4; ++k)
+        for (int m = k + 1; m < 4; ++m)
+          if (along(cross(a[j] - a[i], b[m] - b[k]))) return true;
+  return false;
+}
+
+/// From tetrahedra that share corners to such as are far apart.
+TEST(Separated, the_list_is_that_of_all_axes) {
+  const Random random{12, 4};
+  int listed = 0, shared = 0, beside = 0;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    std::uint32_t draw = 0;
+    const auto next = [&] { return random.uniform(i, draw++); };
+    const auto point = [&] {
+      const double x = next(), y = next(), z = next();
+      return Vec3{x - 0.5, y - 0.5, z - 0.5};
+    };
+    Corners x[2];
+    const Vec3 way = 2.0 * point();
+    for (int k = 0; k < 4; ++k) {
+      x[0].at[k] = point();
+      x[1].at[k] = point() + way;
+    }
+    const int common = static_cast<int>(i % 4);  // a little apart, as the corners of a crack
+    for (int k = 0; k < common; ++k) x[1].at[k] = x[0].at[k] + 0.2 * next() * point();
+    for (Corners& one : x)
+      if (Target::of(one.at).six_volumes < 0.0) std::swap(one.at[0], one.at[1]);
+    const Pair pair(x[0], x[1], 0.08 * next(), 0.04);
+    const double margins = pair.margin[0] + pair.margin[1];
+    const double way_of_both = margins + near_reach(pair.shape[0]) + near_reach(pair.shape[1]);
+    double size = 0.0;
+    for (const Corners& one : x) {
+      double longest = 0.0;
+      for (int k = 1; k < 4; ++k) longest = std::max(longest, norm(one.at[k] - one.at[0]));
+      size += longest;
+    }
+    const bool apart =
+        separated_by_any_axis(x[0].at, x[1].at, way_of_both + 1e-6 * (size + way_of_both));
+    ASSERT_EQ(pair.is_listed(), !apart) << i;
+    const bool by_corners = fdem_shared::corners_within(x[0].at, x[1].at, margins);
+    listed += apart ? 0 : 1;
+    shared += by_corners ? 1 : 0;
+    beside += !by_corners && fdem_shared::corners_within(x[0].at, x[1].at, 2.0 * margins) && apart;
+  }
+  EXPECT_GT(listed, 1000);
+  EXPECT_LT(listed, 3500);
+  EXPECT_GT(shared, 300);
+  EXPECT_GT(beside, 10);  // a little too far
 }
 
 TEST(Separated, couples_that_hold_something_stay_listed) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "domain/simulated_ranks.hpp"
 #include "fdem3/ranks.hpp"
@@ -159,6 +160,34 @@ TEST(Fdem3SameBits, of_bodies_that_move_as_one_on_ranks) {
   const Outcome expected = ended(scene.world());
   EXPECT_GT(expected.energies[6], 0.0);
   for (const int count : {2, 5}) EXPECT_EQ(on_ranks(scene, count), expected) << count;
+}
+
+/// The stiffest corners lie on the cut between two ranks, where each owns half of the tetrahedra.
+TEST(Fdem3SameBits, of_the_step_that_corners_on_a_cut_rule) {
+  Scene scene;
+  scene.material(10e9, 0.2, 2500.0);
+  scene.material(90e9, 0.2, 2500.0);
+  scene.body("bar", fdem3::testing::box({}, {0.08, 0.02, 0.02}, 0.01, 0.0));
+  for (std::size_t t = 0; t < scene.model.tetrahedron.size(); ++t) {
+    double middle = 0.0;
+    for (const Index corner : scene.model.tetrahedron[t])
+      middle += 0.25 * scene.model.point[static_cast<std::size_t>(corner)].x;
+    if (std::abs(middle) < 0.01) scene.model.material[t] = 1;
+  }
+  fdem3::World alone = scene.world();
+  const double expected = fdem3::choose_time_step(alone);
+  const auto middle_of = [](const fdem3::World& w, Index t) {
+    return fdem3::centroid(w.tetrahedra.nodes.data()[t]).x;
+  };
+  simulate_ranks(2, 2, [&](Communicator& ranks) {
+    fdem3::World whole = scene.world();
+    fdem3::World part = fdem3::share_out(whole, ranks, DomainConfig{}, Space::host);
+    EXPECT_EQ(fdem3::choose_time_step(part), expected);
+    int left = 0, right = 0;
+    for (Index t = 0; t < part.tetrahedra.size(); ++t)
+      if (part.domain.owns(t)) ++(middle_of(part, t) < 0.0 ? left : right);
+    EXPECT_TRUE(left == 0 || right == 0) << left << " and " << right;
+  });
 }
 
 Scene waking_cubes() {

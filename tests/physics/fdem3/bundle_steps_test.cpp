@@ -84,17 +84,45 @@ TEST(BundleSteps, of_tetrahedra_are_near_the_limit_of_the_whole) {
     expect_near_limit(w, 1e-8);
   }
 }
-TEST(BundleSteps, of_triangles_are_near_the_limit_of_the_whole) {
-  fdem::testing::Scene s;
-  s.material(30e9, 0.2, 2500.0);
-  s.config.plane = "strain";
+prepare::Mesh uneven_plate() {
   prepare::Mesh mesh = prepare::equilateral_rectangle({{0.0, 0.0}, {0.1, 0.08}}, 0.01);
   const Random random{5};
   for (std::size_t i = 0; i < mesh.point.size(); ++i)
     mesh.point[i] += 0.005 * Vec2{random.uniform(i, 0) - 0.5, random.uniform(i, 1) - 0.5};
-  s.body("plate", mesh);
+  return mesh;
+}
+TEST(BundleSteps, of_triangles_are_near_the_limit_of_the_whole) {
+  fdem::testing::Scene s;
+  s.material(30e9, 0.2, 2500.0);
+  s.config.plane = "strain";
+  s.body("plate", uneven_plate());
   fdem::World w = s.world();
   expect_near_limit(w, 1e-8);
+}
+
+/// After joints have changed the elements that may touch are asked; tied ones bear rows together
+/// there, too.
+template <class World>
+void expect_bundles_to_rule_after_breaks(World& w) {
+  w.next_dt = 1.0;
+  double alone = 1e300;
+  const auto stable = stable_step(w);
+  for (const Index t : w.reach.element.host()) alone = std::min(alone, stable(t));
+  const double step = shortened_time_step(w, w.reach.element);
+  EXPECT_EQ(step, choose_time_step(w));
+  EXPECT_LT(w.given->time.safety * alone, 0.95 * step);
+}
+TEST(BundleSteps, rule_when_joints_have_changed) {
+  fdem3::testing::Scene solid;
+  solid.material(30e9, 0.2, 2500.0);
+  solid.body("box", fdem3::testing::box({}, {0.04, 0.04, 0.04}, 0.02, 0.2));
+  fdem3::World of_tetrahedra = solid.world();
+  expect_bundles_to_rule_after_breaks(of_tetrahedra);
+  fdem::testing::Scene plane;
+  plane.material(30e9, 0.2, 2500.0);
+  plane.body("plate", uneven_plate());
+  fdem::World of_triangles = plane.world();
+  expect_bundles_to_rule_after_breaks(of_triangles);
 }
 
 // A thin row of tetrahedra: its corners carry the mass of the thick ones beside it.

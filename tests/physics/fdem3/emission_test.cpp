@@ -50,18 +50,12 @@ World parted(const Vec3& velocity) {
   return w;
 }
 std::vector<EmissionEvent> events(const World& w) {
-  std::vector<JointPlace> places;
-  for (Index i = 0; i < w.joints.size(); ++i) {
-    const Index face = w.joints.face_b.data()[i];
+  return emission(w, [&w](Index face) {
     Vec3 x[3];
     for (int k = 0; k < 3; ++k)
       x[k] = w.tetrahedra.nodes.data()[face / 4].at[corner_of_face(face % 4, k)].position;
-    const Vec3 twice = cross(x[1] - x[0], x[2] - x[0]);
-    const Vec3 edge = x[1] - x[0];
-    places.push_back({(1.0 / 3.0) * (x[0] + x[1] + x[2]), (1.0 / norm(twice)) * twice,
-                      (1.0 / norm(edge)) * edge});
-  }
-  return emission(w, places);
+    return place_of(x);
+  });
 }
 const double mu = 30e9 / 2.4, lambda = 30e9 * 0.2 / (1.2 * 0.6);
 

@@ -101,6 +101,30 @@ TEST(Checkpoint, what_older_files_lack_keeps_what_it_holds) {
   EXPECT_EQ(later.seen.data()[99], 7.0);
 }
 
+/// Arrays that are left are written as they are then, copied ones as they were.
+TEST(Checkpoint, arrays_that_are_left_where_they_are_are_not_copied) {
+  const ScratchFolder folder;
+  State s = example(10, 1);
+  const double before = s.mass.data()[3];
+  CheckpointWriter copied, left(CheckpointWriter::Arrays::left);
+  copied.fields("elements", s);
+  left.fields("elements", s);
+  EXPECT_EQ(copied.first_difference(left), "");
+  CheckpointWriter pair(CheckpointWriter::Arrays::left);
+  pair.adopt("first.", left);
+  s.mass.data()[3] = before + 1.0;
+  EXPECT_EQ(copied.first_difference(left), "elements.mass, item 3 of 10");
+  const auto mass_in = [&](const CheckpointWriter& writer, const std::string& prefix) {
+    writer.write(folder / "a.br");
+    State read;
+    CheckpointReader(folder / "a.br").fields(prefix, read);
+    return read.mass.data()[3];
+  };
+  EXPECT_EQ(mass_in(copied, "elements"), before);
+  EXPECT_EQ(mass_in(left, "elements"), before + 1.0);
+  EXPECT_EQ(mass_in(pair, "first.elements"), before + 1.0);
+}
+
 TEST(Checkpoint, a_state_whose_arrays_differ_in_length_is_refused) {
   const ScratchFolder folder;
   const std::string path = folder / "a.br";

@@ -73,9 +73,8 @@ struct Areas {
 };
 Areas areas_of(const Frame& frame, const std::string& clip, const std::string& view) {
   const Axes axes = axes_of_view(view);
-  Scene scene{{axes, {}, 0.0, 0.0, 1.0}, std::nullopt, {}, {}, {}};
+  Scene scene{{axes, {}, 0.0, 0.0, 1.0}, std::nullopt, &frame.position, {}, {}};
   if (const auto plane = clip_of(clip, axes)) scene.clip = on_screen(*plane, scene.camera);
-  for (const Vec3& p : frame.position) scene.points.push_back(scene.camera.project(p));
   Areas areas;
   for (const SolidPiece& piece : pieces_of(frame, scene))
     (piece.section ? areas.sections : areas.faces) += area_of(piece);

@@ -97,5 +97,11 @@ TEST(Snapshot, IsNotMadeOnTheHost) {
   EXPECT_EQ(flying(Space::host)->snapshot(), nullptr);
 }
 
+TEST(Snapshot, IsNotMadeAtTheEndOfARun) {
+  const auto method = flying(Space::shadow);
+  EXPECT_NE(snapshot_of(*method, Then::steps), nullptr);
+  EXPECT_EQ(snapshot_of(*method, Then::end), nullptr);
+}
+
 }  // namespace background_test
 }  // namespace breccia
