@@ -54,6 +54,51 @@ BR_HD inline void gather_odd(const View<const Record>& records, const Indices<R>
   columns[count - 1] = pack_of<R>(last);
 }
 
+/// Records without their first numbers, where they lie: no index may lead beyond the last of them.
+template <int first, class Record>
+BR_HD inline View<const Record> numbers_from(const View<const Record>& records) {
+  View<const Record> rest = records;
+  rest.data =
+      reinterpret_cast<const Record*>(reinterpret_cast<const double*>(records.data) + first);
+  return rest;
+}
+
+#if !defined(__CUDACC__) && defined(__AVX512F__)
+/// Numbers 0 to 5 of records b less those of records a: columns[k] is number k of every pair.
+template <class Record>
+inline void gather_differences(const View<const Record>& records, const Indices<Pack8>& a,
+                               const Indices<Pack8>& b, Pack8 (&columns)[6]) {
+  static_assert(sizeof(Record) >= sizeof(Pack8));
+  Pack8 rows[8];
+  for (int k = 0; k < 8; ++k)
+    rows[k] = _mm512_sub_pd(_mm512_loadu_pd(records.data + b.at[k]),
+                            _mm512_loadu_pd(records.data + a.at[k]));
+  transpose(rows);
+  for (int k = 0; k < 6; ++k) columns[k] = rows[k];
+}
+#elif !defined(__CUDACC__) && defined(__AVX2__)
+/// Numbers 0 to 5 of records b less those of records a: columns[k] is number k of every pair.
+template <class Record>
+inline void gather_differences(const View<const Record>& records, const Indices<Pack4>& a,
+                               const Indices<Pack4>& b, Pack4 (&columns)[6]) {
+  static_assert(sizeof(Record) >= 6 * sizeof(double));
+  Pack4 rows[4];
+  __m128d rest[4];
+  for (int k = 0; k < 4; ++k) {
+    const auto* const of_a = reinterpret_cast<const double*>(records.data + a.at[k]);
+    const auto* const of_b = reinterpret_cast<const double*>(records.data + b.at[k]);
+    rows[k] = _mm256_sub_pd(_mm256_loadu_pd(of_b), _mm256_loadu_pd(of_a));
+    rest[k] = _mm_sub_pd(_mm_loadu_pd(of_b + 4), _mm_loadu_pd(of_a + 4));
+  }
+  transpose(rows);
+  for (int k = 0; k < 4; ++k) columns[k] = rows[k];
+  const __m256d even = _mm256_insertf128_pd(_mm256_castpd128_pd256(rest[0]), rest[2], 1);
+  const __m256d odd = _mm256_insertf128_pd(_mm256_castpd128_pd256(rest[1]), rest[3], 1);
+  columns[4] = _mm256_unpacklo_pd(even, odd);
+  columns[5] = _mm256_unpackhi_pd(even, odd);
+}
+#endif
+
 /// gather_records of the parts of records that lie side by side: part i of all of them.
 template <class Record, class Part, int count, class R>
 BR_HD inline void gather_parts(const View<const Record>& records, const Indices<R>& i,

@@ -13,6 +13,18 @@ struct PairEnd {
   Vec3Of<R> spin;      ///< likewise  [rad/s]
 };
 
+/// Both ends of a pair, as its motion depends on them.
+template <class R>
+struct PairEnds {
+  Vec3Of<R> way;             ///< from a to b  [m]
+  Vec3Of<R> parting;         ///< velocity of b less that of a  [m/s]
+  Vec3Of<R> spin_a, spin_b;  ///<  [rad/s]
+};
+template <class R>
+BR_HD PairEnds<R> ends_of(const PairEnd<R>& a, const PairEnd<R>& b) {
+  return {b.position - a.position, b.velocity - a.velocity, a.spin, b.spin};
+}
+
 /// Kinematics of a pair a, b over the step that brought it here (docs/theory.md, pair kinematics).
 ///
 /// The normal n points from a to b. The contact point divides the distance into the arms of a and
@@ -55,10 +67,9 @@ BR_HD R turn_scale(const Vec3Of<R>& half_turn) {
 /// tan(angle) axis = (d_old x n) / (d_old . n) = dt (n x dv) / (D - dt dv.n) holds exactly.
 /// Rotations are Cayley's: a spin w turns by 2 atan(|w| dt / 2) in a step (math/vec.hpp, turned).
 template <class R>
-BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const R& excess,
-                                double dt) {
+BR_HD PairMotion<R> pair_motion(const PairEnds<R>& ends, const R& excess, double dt) {
   PairMotion<R> m;
-  const Vec3Of<R> d = b.position - a.position;
+  const Vec3Of<R>& d = ends.way;
   m.distance = norm(d);
   const R inverse = 1.0 / m.distance;
   m.normal = inverse * d;
@@ -66,7 +77,7 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
   m.arm_b = 0.5 * (m.distance - excess);
 
   const R step = constant<R>(dt);
-  const Vec3Of<R> dv = b.velocity - a.velocity;
+  const Vec3Of<R>& dv = ends.parting;
   m.extension = step * dot(dv, m.normal);
   // 1 / (D - e D) with the stretch e of one step, by its series: e^4 is below rounding
   const R stretch = step * inverse * dot(dv, m.normal);
@@ -78,20 +89,25 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
   const Vec3Of<R> swing =
       half * (1.0 - quarter * square * (1.0 - square * (half - 0.3125 * square))) * tangent;
   const Vec3Of<R> middle = m.normal + cross(m.normal, swing);  // along old + new normal
-  const R spin =
-      quarter * step * dot(m.normal, a.spin + b.spin);  // tan of half the mean spin's angle
-  m.half_turn = swing + spin * middle;                  // the spin first, then the swing
+  const R spin = quarter * step *
+                 dot(m.normal, ends.spin_a + ends.spin_b);  // tan of half the mean spin's angle
+  m.half_turn = swing + spin * middle;                      // the spin first, then the swing
 
   // Slip with the levers of the middle of the step: a rigid turn of the pair slips by exactly
   // nothing.
   const R bend = dot(swing, swing);
   const Vec3Of<R> lever = (1.0 - bend * (1.0 - bend)) * middle;  // (old + new normal) / 2
-  const Vec3Of<R> sliding = dv - cross(m.arm_b * b.spin + m.arm_a * a.spin, lever);
+  const Vec3Of<R> sliding = dv - cross(m.arm_b * ends.spin_b + m.arm_a * ends.spin_a, lever);
   m.slip = step * m.tangential(sliding);
-  m.turn = step * (b.spin - a.spin);
+  m.turn = step * (ends.spin_b - ends.spin_a);
   m.turn_scale = turn_scale(m.half_turn);
   m.time = step;
   return m;
+}
+template <class R>
+BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const R& excess,
+                                double dt) {
+  return pair_motion<R>(ends_of(a, b), excess, dt);
 }
 
 }  // namespace breccia::dem

@@ -104,7 +104,7 @@ struct ConcreteLinkForces {
     Indices<R> a, b;
     R length, stiffness, area;
     LinkState<R> state;
-    LinkEnd<R> end_a, end_b;
+    LinkPair<R> ends;
   };
   template <class R>
   BR_HD void load_early(Index i, Loaded<R>& loaded) const {
@@ -117,8 +117,7 @@ struct ConcreteLinkForces {
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
-    loaded.end_a = load_end<R>(elements.state, loaded.a);
-    loaded.end_b = load_end<R>(elements.state, loaded.b);
+    loaded.ends = load_pair<R>(elements.state, loaded.a, loaded.b);
   }
   template <class R>
   BR_HD void update(Index i, const Loaded<R>& loaded) const {
@@ -127,9 +126,8 @@ struct ConcreteLinkForces {
   /// @tparam parts  those that `by` may have
   template <ConcreteParts parts = concrete_all, class R>
   BR_HD void update(const ConcreteLink& by, Index i, const Loaded<R>& loaded) const {
-    const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
-    const PairMotion<R> motion =
-        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, radius_a - radius_b, dt);
+    const R &radius_a = loaded.ends.radius_a, &radius_b = loaded.ends.radius_b;
+    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, radius_a - radius_b, dt);
     const R touching = radius_a + radius_b;
     const LinkConstants<R> link{loaded.length, loaded.stiffness, loaded.area, 0.5 * touching,
                                 touching};

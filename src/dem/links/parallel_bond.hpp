@@ -71,7 +71,7 @@ struct ParallelBondForces {
     Indices<R> a, b;
     R length, stiffness, strength;
     ParallelBondStateOf<R> state;
-    LinkEnd<R> end_a, end_b;
+    LinkPair<R> ends;
   };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   template <class R>
@@ -87,8 +87,7 @@ struct ParallelBondForces {
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
-    loaded.end_a = load_end<R>(elements.state, loaded.a);
-    loaded.end_b = load_end<R>(elements.state, loaded.b);
+    loaded.ends = load_pair<R>(elements.state, loaded.a, loaded.b);
   }
   BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
   template <class R>
@@ -98,9 +97,8 @@ struct ParallelBondForces {
   /// @returns false, having done nothing, if the bonds of a pack are to be taken one by one
   template <class R>
   BR_HD bool update(const ParallelBond& by, Index i, const Loaded<R>& loaded) const {
-    const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
-    const PairMotion<R> motion =
-        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, radius_a - radius_b, dt);
+    const R &radius_a = loaded.ends.radius_a, &radius_b = loaded.ends.radius_b;
+    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, radius_a - radius_b, dt);
     const auto k =
         by.constants(loaded.length, loaded.stiffness, loaded.strength, radius_a, radius_b);
     ParallelBondStateOf<R> kept = loaded.state;

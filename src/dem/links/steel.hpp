@@ -81,7 +81,7 @@ struct SteelLinkForcesTo {
     Indices<R> a, b;
     R length;
     SteelStateOf<R> state;
-    LinkEnd<R> end_a, end_b;
+    LinkPair<R> ends;
   };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   template <class R>
@@ -93,8 +93,7 @@ struct SteelLinkForcesTo {
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
-    loaded.end_a = load_end<R>(elements.state, loaded.a);
-    loaded.end_b = load_end<R>(elements.state, loaded.b);
+    loaded.ends = load_pair<R>(elements.state, loaded.a, loaded.b);
   }
   BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
   template <class R>
@@ -104,10 +103,9 @@ struct SteelLinkForcesTo {
   /// @returns false, having done nothing, if the links of a pack are to be taken one by one
   template <class R>
   BR_HD bool update(const SteelLink& by, Index i, const Loaded<R>& loaded) const {
-    const PairMotion<R> motion =
-        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, constant<R>(0.0), dt);
+    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, constant<R>(0.0), dt);
     const R own_length = loaded.length;
-    const R radius = min(loaded.end_a.radius, loaded.end_b.radius);
+    const R radius = min(loaded.ends.radius_a, loaded.ends.radius_b);
     const SteelLink::StiffnessOf<R> k = by.stiffness(own_length, radius);
     SteelStateOf<R> kept = loaded.state;
     SteelResponseOf<R> r;

@@ -243,8 +243,7 @@ struct TileStep : TileContent {
     loaded.stiffness = memory.stiffness[l];
     loaded.area = memory.area[l];
     loaded.state = {memory.opening[l], shear()[l], moment()[l]};
-    loaded.end_a = end(link.a);
-    loaded.end_b = end(link.b);
+    loaded.ends = link_pair(end(link.a), end(link.b));
     const ConcreteLink& law = memory.concrete_laws[link.group];
     if ((all.concrete_parts & ~concrete_bounded) == 0)
       return kernel.template update<concrete_bounded>(law, l, loaded);
@@ -268,8 +267,7 @@ struct TileStep : TileContent {
     SteelLinkForcesTo<TileActions>::Loaded<double> loaded;
     loaded.length = memory.bar_length[l];
     loaded.state = memory.bar_state[l];
-    loaded.end_a = end(link.a);
-    loaded.end_b = end(link.b);
+    loaded.ends = link_pair(end(link.a), end(link.b));
     kernel.update(law, l, loaded);
   }
   BR_HD void bond(double dt, Index l) const {
