@@ -20,6 +20,7 @@
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/checks/check_regions.hpp"
+#include "prepare/checks/check_tools.hpp"
 #include "run/case.hpp"
 #include "run/case_keys.hpp"
 #include "run/machine/forecast.hpp"
@@ -177,6 +178,8 @@ struct CheckCommand {
       for (const std::string& doubt : prepare::doubtful_probes(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_loads(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_loads(config, read.folder)) tell(doubt);
+    if constexpr (requires { prepare::doubtful_tools(config, read.folder); })
+      for (const std::string& doubt : prepare::doubtful_tools(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::merged_lines(config, read.folder); })
       for (const std::string& note : prepare::merged_lines(config, read.folder)) tell(note);
   }

@@ -8,6 +8,7 @@ namespace breccia::fdem_shared {
 
 template void pull_bolts(fdem::World&);
 template std::vector<BoltRowOf<Vec2>> bolt_rows(const fdem::World&);
+template std::vector<BoltSegmentOf<Vec2>> bolt_segments(const fdem::World&);
 template std::optional<Readings> read_bolt(const fdem::World&, const ProbeConfig&);
 template std::vector<BoltEnergy> bolt_energies(const fdem::World&);
 

@@ -21,6 +21,7 @@
 #include "fdem/triangles/loads.hpp"
 #include "fdem_shared/busy_couples.hpp"
 #include "fdem_shared/exposed.hpp"
+#include "fdem_shared/rigid.hpp"
 #include "fdem_shared/stable_parts.hpp"
 
 namespace breccia::fdem {
@@ -31,6 +32,8 @@ using fdem_shared::WholeMesh;
 /// Where fluid presses on cracks: the same on all ranks.
 using FluidState = fdem_shared::FluidStateOf<LoadedEdge, CrackSide>;
 
+using RigidBody = fdem_shared::RigidBodyOf<Vec2>;
+using RigidState = fdem_shared::RigidStateOf<Vec2>;
 using BoltNode = fdem_shared::BoltNodeOf<Vec2>;
 using BoltState = fdem_shared::BoltStateOf<Vec2, LoadedEdge>;
 
@@ -66,6 +69,7 @@ struct World {
   // Prescribed motions: constant but for those that servos lead.
   std::vector<PrescribedMotion> prescribed;  ///< (motions; set-up, stage, servo)
   std::vector<ServoMotion> servo_motions;    ///< which of them servos lead (set-up, stage)
+  std::vector<RigidBody> rigid_bodies;       ///< that move by forces now (set-up, stage)
 
   /// Visits the arrays that kernels read: state, and what follows from the case.
   template <class Visit>
@@ -105,6 +109,7 @@ struct World {
   double next_dt = 0.0;       ///< the step to come  [s]  (dt, search, insertion)
   std::int64_t step = 0;      ///< steps taken  [-]  (end of a step)
   std::int64_t searches = 0;  ///< [-]  (search)
+  std::vector<RigidState> rigid;   ///< of supports; empty: none is ever free (stage, motions)
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
   FluidState fluid;                ///< (fluid: spread_fluid(), every servo_every steps)
@@ -200,6 +205,12 @@ void step(World& w);
 Advanced advance(World& w, const StopAt& stop);
 /// Velocities of supports at the middle of the step to come, into World::motions.
 void list_motions(World& w);
+/// As list_motions(), between two steps, for those who look at velocities there: rigid bodies then
+/// have those of the step to come. All ranks call it.
+void foresee_motions(World& w);
+/// Rigid bodies of a new world, and those that a stage sets free. All ranks call it.
+void start_rigid_bodies(World& w, const Config& config);
+void take_up_rigid_bodies(World& w);
 
 /// The parts of a step that all runs share (fdem/stepping/step.hpp).
 /// Asks all ranks whether couples must be searched for, and hears what they say.

@@ -8,6 +8,7 @@ namespace breccia::fdem_shared {
 
 template void pull_bolts(fdem3::World&);
 template std::vector<BoltRowOf<Vec3>> bolt_rows(const fdem3::World&);
+template std::vector<BoltSegmentOf<Vec3>> bolt_segments(const fdem3::World&);
 template std::optional<Readings> read_bolt(const fdem3::World&, const ProbeConfig&);
 template std::vector<BoltEnergy> bolt_energies(const fdem3::World&);
 

@@ -21,6 +21,7 @@
 #include "fdem3/setup/model.hpp"
 #include "fdem_shared/busy_couples.hpp"
 #include "fdem_shared/exposed.hpp"
+#include "fdem_shared/rigid.hpp"
 #include "fdem_shared/stable_parts.hpp"
 
 namespace breccia::fdem3 {
@@ -31,6 +32,8 @@ using fdem_shared::WholeMesh;
 /// Where fluid presses on cracks: the same on all ranks.
 using FluidState = fdem_shared::FluidStateOf<LoadedFace, CrackSide>;
 
+using RigidBody = fdem_shared::RigidBodyOf<Vec3>;
+using RigidState = fdem_shared::RigidStateOf<Vec3>;
 using BoltNode = fdem_shared::BoltNodeOf<Vec3>;
 using BoltState = fdem_shared::BoltStateOf<Vec3, LoadedFace>;
 
@@ -46,6 +49,7 @@ struct World {
   // Prescribed motions: constant but for those that servos lead.
   std::vector<PrescribedMotion> prescribed;  ///< (motions; set-up, stage, servo)
   std::vector<ServoMotion> servo_motions;    ///< which of them servos lead (set-up, stage)
+  std::vector<RigidBody> rigid_bodies;       ///< that move by forces now (set-up, stage)
 
   /// Visits the arrays that kernels read: state, and what follows from the case.
   template <class Visit>
@@ -85,6 +89,7 @@ struct World {
   double next_dt = 0.0;            ///< the step to come  [s]  (dt, search, insertion)
   std::int64_t step = 0;           ///< steps taken  [-]  (end of a step)
   std::int64_t searches = 0;       ///< [-]  (search)
+  std::vector<RigidState> rigid;   ///< of supports; empty: none is ever free (stage, motions)
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
   FluidState fluid;                ///< (fluid: spread_fluid(), every servo_every steps)
@@ -178,6 +183,12 @@ void step(World& w);
 Advanced advance(World& w, const StopAt& stop);
 /// Velocities of supports at the middle of the step to come, into World::motions.
 void list_motions(World& w);
+/// As list_motions(), between two steps, for those who look at velocities there: rigid bodies then
+/// have those of the step to come. All ranks call it.
+void foresee_motions(World& w);
+/// Rigid bodies of a new world, and those that a stage sets free. All ranks call it.
+void start_rigid_bodies(World& w, const Config& config);
+void take_up_rigid_bodies(World& w);
 
 /// Asks all ranks whether couples must be searched for, and hears what they say.
 void ask_ranks_for_search(World& w);

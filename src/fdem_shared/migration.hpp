@@ -326,6 +326,7 @@ void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);
   for (auto& servo : w.servos) take_from_first(ranks, servo);
+  for (auto& body : w.rigid) take_from_first(ranks, body);
   ShapeOf<World>::take_common(w, ranks);
   for (Buffer<std::uint8_t>* flags : {&w.exposed.changed, &w.exposed.vertex}) {
     Message message;
@@ -438,6 +439,7 @@ void collect(World& part, World& whole) {
   whole.domain.partition =
       partition_at(part.domain, to_space(part.reach.drift.velocity), part.time);
   whole.servos = part.servos;
+  whole.rigid = part.rigid;
   Shape::collect_common(part, whole);
   copy_time(part, whole);
   derive_couples(whole);

@@ -23,6 +23,9 @@ using SpinOf = typename SpinOfVector<Vector>::Spin;
 BR_HD inline double squared(double spin) {
   return spin * spin;
 }
+BR_HD inline double squared(const Vec2& v) {
+  return dot(v, v);
+}
 BR_HD inline double squared(const Vec3& spin) {
   return dot(spin, spin);
 }

@@ -14,6 +14,7 @@ namespace breccia::fdem_shared {
 /// stable below 2/omega (sqrt(1 + xi^2) - xi).
 /// @param square  omega^2  [1/s2]  @param lost  [N s/m]
 BR_HD inline double stable_step_of(double square, double lost, double mass) {
+  if (!(square > 0.0)) return 1e300;  // nothing acts on it
   const double omega = sqrt(square);
   const double xi = 0.5 * lost / (mass * omega);
   return 2.0 / omega * (sqrt(1.0 + xi * xi) - xi);

@@ -10,6 +10,7 @@
 #include "exec/timers.hpp"
 #include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/ranks.hpp"
+#include "fdem_shared/rigid_bodies.hpp"
 #include "fdem_shared/shape.hpp"
 #include "fdem_shared/stepwise_run.hpp"
 
@@ -59,19 +60,36 @@ auto world_move(World& w) {
 }
 
 /// Velocities of supports at the middle of the step to come, into World::motions.
+/// @returns the states of rigid bodies after it
 template <class World>
-void list_world_motions(World& w) {
-  if (w.prescribed.empty()) return;
+auto motions_to_come(World& w) {
+  auto rigid = w.rigid;
+  if (w.prescribed.empty()) return rigid;
   std::vector<typename ShapeOf<World>::Motion> now;
   for (const auto& p : w.prescribed) now.push_back(p.now(w.time, w.next_dt));
+  for (const auto& body : w.rigid_bodies) {
+    const auto step = rigid_step(w, body);
+    now[at(body.motion)] = step.motion;
+    rigid[body.support] = step.after;
+  }
   copy_to(w.motions, now);
+  return rigid;
+}
+template <class World>
+void list_world_motions(World& w) {
+  w.rigid = motions_to_come(w);
+}
+template <class World>
+void foresee_world_motions(World& w) {
+  if (!w.rigid_bodies.empty()) motions_to_come(w);
 }
 
-/// Whether a support turns what it holds: the host tells in each step where its axis is.
+/// Whether a support turns what it holds, or lets it go where forces lead: the host tells in each
+/// step where its axis is.
 template <class World>
 bool turns_anything(const World& w) {
-  return std::any_of(w.prescribed.begin(), w.prescribed.end(),
-                     [](const auto& p) { return p.turns(); });
+  return !w.rigid_bodies.empty() || std::any_of(w.prescribed.begin(), w.prescribed.end(),
+                                                [](const auto& p) { return p.turns(); });
 }
 
 template <class World>

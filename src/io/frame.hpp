@@ -46,6 +46,15 @@ inline FrameField whole_numbers(std::string name, std::vector<std::int32_t> numb
   return field;
 }
 
+/// A piece of a bolt between two of its nodes.
+struct FrameBar {
+  Vec3 begin, end;        ///<  [m]
+  float force;            ///< along it, positive pulls  [N; in 2D N/m]
+  float across;           ///<  [N; in 2D N/m]
+  float slip;             ///< of its begin along the rock  [m]
+  std::int32_t bolt = 0;  ///< its number in the case
+};
+
 /// Corners of the faces of a tetrahedron, counter-clockwise as seen from outside.
 constexpr int tetrahedron_faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
@@ -76,6 +85,8 @@ struct Frame {
   std::vector<std::string> groups;  ///< names for the point field "group"; may be empty
   std::vector<FrameWall> walls;
   std::vector<FrameContact> contacts;  ///< of a part: those of its rank
+  bool bolted = false;                 ///< the case has bolts, which may come later
+  std::vector<FrameBar> bars;          ///< of bolts that are there; on each rank all of them
 };
 
 /// Where the items of a part of a frame stand in the whole. Such a part has the items of one rank;

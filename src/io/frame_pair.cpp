@@ -103,6 +103,8 @@ Frame paired(const Frame& spheres, const Frame& of_solids) {
   all.groups.insert(all.groups.end(), solids.groups.begin(), solids.groups.end());
   all.walls.insert(all.walls.end(), solids.walls.begin(), solids.walls.end());
   join_contacts(all, solids);
+  all.bolted = all.bolted || solids.bolted;
+  all.bars.insert(all.bars.end(), solids.bars.begin(), solids.bars.end());
   return all;
 }
 

@@ -174,6 +174,47 @@ TEST(Removal, unloads_the_face_by_a_wave) {
 }
 
 /// A sphere on a prop that goes falls freely.
+/// A support on the wall that a stage lays bare: free at first, then moved, then free again.
+fdem::testing::Scene dug_and_moved() {
+  using fdem::testing::far;
+  fdem::testing::Scene s = dug("intrinsic");
+  s.support("wall", {0.0199, -far}, {0.0201, far}, {}, {}, "left");
+  s.config.probes = {{"wall", "wall", "velocity_x", "mean"},
+                     {"most", "wall", "velocity_x", "max"},
+                     {"across", "wall", "velocity_y", "max"}};
+  s.config.stages[1].supports = {{"wall", {"x", "y"}, {-3.0, 0.0}, 0.0, {}}};
+  s.config.stages[2].supports = {{"wall", {}, {}, 0.0, {}}};
+  return s;
+}
+TEST(Removal, supports_move_the_wall_that_it_lays_bare) {
+  const fdem::testing::Scene s = dug_and_moved();
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  StageControl stages(*method, s.config.probes, "", nullptr);
+  double last = 0.0;
+  std::int64_t moved = 0;
+  while (!stages.finished()) {
+    method->advance(stages.limited({1.0, method->steps() + 1}));
+    const std::vector<double> now = method->probes();
+    const std::int32_t stage = method->stage().index;
+    if (stage == 0 && method->time() > 3e-5) {
+      EXPECT_GT(now[0], 1e-3);  // it goes with the strip that is pulled
+    }
+    if (stage == 1 && method->time() > 4.1e-5) {
+      EXPECT_NEAR(now[0], -3.0, 1e-12);
+      EXPECT_NEAR(now[1], -3.0, 1e-12);
+      EXPECT_NEAR(now[2], 0.0, 1e-12);
+      ++moved;
+    }
+    if (stage == 2) last = now[0];
+    stages.look();
+  }
+  EXPECT_GT(moved, 100);
+  EXPECT_GT(std::abs(last + 3.0), 0.1);  // the strip throws it back
+  EXPECT_LT(method->energy().error_relative, 1e-2);
+  expect_alike(s);
+  expect_resumed(s);
+}
+
 TEST(Removal, lets_what_stood_on_a_prop_fall) {
   dem::testing::Scene s = propped();
   s.config.stages.pop_back();

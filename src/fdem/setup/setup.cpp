@@ -242,6 +242,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   find_couples(w);
   load_faces(w, faces);
   fdem_shared::add_mass_to_ruling(w);
+  start_rigid_bodies(w, config);
   set_up(w).free_step = free_time_step(w);
   evaluate_forces(w);
   refuse_endless(w);

@@ -39,6 +39,15 @@ StableStep stable_step(const World& w) {
 void list_motions(World& w) {
   fdem_shared::list_world_motions(w);
 }
+void foresee_motions(World& w) {
+  fdem_shared::foresee_world_motions(w);
+}
+void start_rigid_bodies(World& w, const Config& config) {
+  fdem_shared::start_rigid_of_world(w, config);
+}
+void take_up_rigid_bodies(World& w) {
+  fdem_shared::take_up_rigid_of_world(w);
+}
 AllowedStep allowed_step(const World& w) {
   return fdem_shared::world_allowed_step(w);
 }

@@ -13,7 +13,8 @@ using fdem_shared::Moved;
 /// motion is motion[k].
 struct Hold {
   std::uint8_t fixed = 0;
-  std::uint8_t gone = 0;  ///< 1: the triangle has been taken out of the model
+  std::uint8_t gone = 0;   ///< 1: the triangle has been taken out of the model
+  std::uint8_t loose = 0;  ///< 1: forces move the rigid body that it is a part of
   std::int16_t motion[3] = {-1, -1, -1};
 
   /// Bits 0 and 1: x and y of corner k.

@@ -230,8 +230,10 @@ struct StableStep {
   }
   /// Whether a corner goes where it is told, whatever its mass.
   BR_HD bool is_held(Index t, int corner) const {
-    return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 3;
+    return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 3 && holds[hold[t]].loose == 0;
   }
+  /// Whether it is a part of a rigid body that forces move: only what it meets is stiff.
+  BR_HD bool is_loose(Index t) const { return hold[t] >= 0 && holds[hold[t]].loose != 0; }
 
  private:
   /// A triangle as it stands now, and the stiffness of its edges.
@@ -251,8 +253,11 @@ struct StableStep {
     BR_HD Parts row(const StableStep& s, Index t, const Vec2 (&x)[3], int i) const {
       const ElasticTriangle& law = s.laws[s.law_of[t]];
       Parts p;
-      fdem_shared::add_element<2>(p, slope, i, {area, 1.0}, law.lambda, law.shear, s.viscosity[t]);
-      if (law.is_bedded()) p.element += row_of_planes(slope, i, area, law);
+      if (!s.is_loose(t)) {
+        fdem_shared::add_element<2>(p, slope, i, {area, 1.0}, law.lambda, law.shear,
+                                    s.viscosity[t]);
+        if (law.is_bedded()) p.element += row_of_planes(slope, i, area, law);
+      }
       const int before = i == 0 ? 2 : i - 1;
       if (s.dashpots.size > 0) p.absorbed = s.dashpot(t, i, x) + s.dashpot(t, before, x);
       p.joint = on_edge[i][0] + on_edge[before][0];

@@ -10,7 +10,8 @@ namespace breccia::fdem3 {
 /// k, whose motion is motion[k].
 struct Hold {
   std::uint16_t fixed = 0;
-  std::uint16_t gone = 0;  ///< 1: the tetrahedron has been taken out of the model
+  std::uint8_t gone = 0;   ///< 1: the tetrahedron has been taken out of the model
+  std::uint8_t loose = 0;  ///< 1: forces move the rigid body that it is a part of
   std::int16_t motion[4] = {-1, -1, -1, -1};
 
   /// Bits 0, 1 and 2: x, y and z of corner k.

@@ -66,8 +66,10 @@ struct StableStep {
   }
   /// Whether a corner goes where it is told, whatever its mass.
   BR_HD bool is_held(Index t, int corner) const {
-    return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 7;
+    return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 7 && holds[hold[t]].loose == 0;
   }
+  /// Whether it is a part of a rigid body that forces move: only what it meets is stiff.
+  BR_HD bool is_loose(Index t) const { return hold[t] >= 0 && holds[hold[t]].loose != 0; }
 
  private:
   /// Whether another tetrahedron is near. Searches list all pairs that may come as near as the sum
@@ -103,8 +105,9 @@ struct StableStep {
     BR_HD Parts row(const StableStep& s, Index t, int i) const {
       const ElasticTetrahedron& law = s.laws[s.law_of[t]];
       Parts p = of_faces[i];
-      fdem_shared::add_element<3>(p, target.slope, i, {1.0, target.six_volumes / 6.0},
-                                  law.bound_lambda(), law.bound_shear(), s.viscosity[t]);
+      if (!s.is_loose(t))
+        fdem_shared::add_element<3>(p, target.slope, i, {1.0, target.six_volumes / 6.0},
+                                    law.bound_lambda(), law.bound_shear(), s.viscosity[t]);
       return p;
     }
   };

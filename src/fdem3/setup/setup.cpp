@@ -346,6 +346,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   w.exposed.vertex.resize(static_cast<Index>(model.point.size()));
   find_couples(w);
   fdem_shared::add_mass_to_ruling(w);
+  start_rigid_bodies(w, config);
   set_up(w).free_step = free_time_step(w);
   evaluate_forces(w);
   refuse_endless(w);

@@ -63,6 +63,18 @@ struct BoltRowOf {
 template <class World>
 std::vector<BoltRowOf<typename ShapeOf<World>::Vector>> bolt_rows(const World& whole);
 
+/// A segment of a bolt that is there, as frames show it.
+template <class Vector>
+struct BoltSegmentOf {
+  std::size_t bolt;
+  Vector begin, end;     ///<  [m]
+  double force, across;  ///< likewise  [N; in 2D N/m]
+  double slip;           ///< of its begin  [m]
+};
+/// All of them, on each rank. All ranks call it.
+template <class World>
+std::vector<BoltSegmentOf<typename ShapeOf<World>::Vector>> bolt_segments(const World& part);
+
 /// Forces of a bolt's segments in the probe's box; none: the probe reads no bolt. On
 /// ranks the first one reads it.
 template <class World>

@@ -288,6 +288,24 @@ std::vector<BoltRowOf<typename ShapeOf<World>::Vector>> bolt_rows(const World& w
 }
 
 template <class World>
+std::vector<BoltSegmentOf<typename ShapeOf<World>::Vector>> bolt_segments(const World& part) {
+  std::vector<BoltSegmentOf<typename ShapeOf<World>::Vector>> segments;
+  if (part.given->bolts.empty()) return segments;
+  const auto now = bolt_nodes_now(part);
+  std::size_t node = 0;
+  for (std::size_t b = 0; b < part.given->bolts.size(); ++b) {
+    const std::size_t count = part.given->bolts[b].places.size();
+    for (std::size_t i = 0; i < count; ++i, ++node) {
+      const auto& of = part.bolts.nodes.data()[node];
+      if (i + 1 == count || !(of.rest > 0.0)) continue;
+      segments.push_back(
+          {b, now[node].place, now[node + 1].place, of.force, as_one(of.across), of.slip});
+    }
+  }
+  return segments;
+}
+
+template <class World>
 std::vector<BoltEnergy> bolt_energies(const World& whole) {
   std::vector<BoltEnergy> energies(whole.given->bolts.size());
   const auto rows = bolt_rows(whole);

@@ -156,6 +156,12 @@ class BoltPlacing {
   using Shape = ShapeOf<World>;
   using Vector = typename Shape::Vector;
   using Place = BoltPlaceOf<Vector>;
+  static constexpr const char* stiffness_unit = Shape::dimension == 2 ? "N/m2" : "N/m";
+  /// How stiffly bolts pull at the corners of an element, along and across.  [N/m; in 2D N/m2]
+  struct Pull {
+    double along = 0.0, across = 0.0;
+    int bolts = 0;
+  };
 
  public:
   BoltPlacing(const World& w, const Config& config, const Model& model)
@@ -164,7 +170,7 @@ class BoltPlacing {
     copy_to(reference_, Shape::reference(Shape::elements(w)));
   }
   /// @throws InputError
-  BoltOf<Vector> placed(const BoltConfigOf<Vector>& given) const {
+  BoltOf<Vector> placed(const BoltConfigOf<Vector>& given) {
     BoltOf<Vector> bolt;
     bolt.name = given.name;
     bolt.law = law_of(given);
@@ -180,11 +186,17 @@ class BoltPlacing {
       look_at(bolt.name, bolt.places.back());
     }
     std::map<Index, double> bonded;  // length in each element
+    std::map<Index, Pull> pull;      // of this bolt, at its stiffest node in each element
     for (std::size_t i = 0; i + 1 < bolt.places.size(); ++i)
       for (const std::size_t end : {i, i + 1})
         bonded[bolt.places[end].element] += 0.5 * norm(way_of(bolt, i));
-    for (std::size_t i = 0; i < bolt.places.size(); ++i)
-      look_at_stiffness(bolt, i, bonded[bolt.places[i].element]);
+    for (std::size_t i = 0; i < bolt.places.size(); ++i) {
+      const Index element = bolt.places[i].element;
+      const Pull own = look_at_stiffness(bolt, i, bonded[element]);
+      Pull& most = pull[element];
+      most = {std::max(most.along, own.along), std::max(most.across, own.across)};
+    }
+    for (const auto& [element, own] : pull) add_to_others(bolt.name, element, own);
     return bolt;
   }
 
@@ -252,7 +264,8 @@ class BoltPlacing {
   /// A node that does not slip, or where the bar bends, pulls with its segments. Elsewhere rock
   /// that moves along the bar feels no more than the bond in the element, which slips with it.
   /// @param bonded  length of the bar in the element of the node  [m]
-  void look_at_stiffness(const BoltOf<Vector>& bolt, std::size_t i, double bonded) const {
+  /// @returns how stiffly it pulls
+  Pull look_at_stiffness(const BoltOf<Vector>& bolt, std::size_t i, double bonded) const {
     const std::size_t last = bolt.places.size() - 1;
     const Vector before = way_of(bolt, i > 0 ? i - 1 : 0),
                  after = way_of(bolt, i < last ? i : i - 1);
@@ -272,6 +285,26 @@ class BoltPlacing {
                                     stiffness),
           problem_across<Shape>(where, bolt.law, segment, least_height(corner), stiffness)})
       if (!problem.empty()) throw InputError(problem);
+    const double turns = 1.0 + 0.5 * segment / least_height(corner);
+    return {std::min(2.0 * bolt.law.stiffness / segment, anchored ? no_limit : slips),
+            bolt.law.dowel.stiffness * turns * turns};
+  }
+  /// Bolts in one element pull at its corners together.
+  void add_to_others(const std::string& name, Index element, const Pull& own) {
+    Pull& all = together_[element];
+    all.along += own.along;
+    all.across += own.across;
+    all.bolts += 1;
+    const auto t = at(element);
+    const double corners =
+        Shape::corner_stiffness(laws_[graded_ ? t : at(model_.material[t])], reference_[t]);
+    const double most = std::max(all.along, all.across);
+    if (most > corners)
+      throw InputError(
+          "bolt." + name + ": with it " + std::to_string(all.bolts) + " bolts pull at " +
+          Shape::element + " " + std::to_string(element) + ", together with " + short_text(most) +
+          " " + stiffness_unit + ", more stiffly than its corners are (" + short_text(corners) +
+          "); fewer of them there, larger " + Shape::elements_word + ", or a softer bond");
   }
 
   const Config& config_;
@@ -279,6 +312,7 @@ class BoltPlacing {
   bool graded_;
   std::vector<typename Shape::Law> laws_;
   std::vector<typename Shape::Reference> reference_;
+  std::map<Index, Pull> together_;  ///< of all bolts so far, in each element
 };
 
 /// @throws InputError naming a bolt with a point outside all elements, in a body that a stage
@@ -287,7 +321,7 @@ template <class World, class Config, class Model>
 void set_up_bolts(World& w, const Config& config, const Model& model) {
   using Vector = typename ShapeOf<World>::Vector;
   if (config.bolts.empty()) return;
-  const BoltPlacing<World, Config, Model> placing(w, config, model);
+  BoltPlacing<World, Config, Model> placing(w, config, model);
   std::vector<BoltOf<Vector>> bolts;
   std::size_t nodes = 0;
   for (const BoltConfigOf<Vector>& given : config.bolts) {

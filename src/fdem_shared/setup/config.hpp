@@ -63,10 +63,22 @@ struct SupportConfigOf {
   std::vector<std::string> fix = directions_of<Vector>();
   OverTime<Vector> velocity;  ///<  [m/s]
   HistoryConfig history;
-  SupportServoConfig servo;         ///< instead of the velocity along its axis
-  OverTime<SpinOf<Vector>> spin{};  ///<  [rad/s]
-  Vector point{};                   ///< of the axis; where a stage begins: at that time  [m]
+  SupportServoConfig servo;           ///< instead of the velocity along its axis
+  OverTime<SpinOf<Vector>> spin{};    ///<  [rad/s]
+  Vector point{};                     ///< of the axis; where a stage begins: at that time  [m]
+  std::vector<std::string> free{};    ///< directions in which forces move what it holds
+  OverTime<Vector> force{};           ///< on that  [N; in 2D N/m]
+  OverTime<SpinOf<Vector>> torque{};  ///< likewise  [N m; in 2D N]
 
+  bool is_free() const { return !free.empty(); }
+  bool is_turning() const { return std::find(free.begin(), free.end(), "turn") != free.end(); }
+  /// Bits of x, y, z.
+  int free_directions() const {
+    int bits = 0;
+    for (const std::string& word : free)
+      bits |= word == "x" ? 1 : word == "y" ? 2 : word == "z" ? 4 : 0;
+    return bits;
+  }
   template <class Visit>
   void each_key(Visit&& key) {
     constexpr bool plane = std::is_same_v<Vector, Vec2>;
@@ -90,6 +102,18 @@ struct SupportConfigOf {
         plane ? "about which spin turns it at the start; it goes along with velocity"
               : "a point of the axis about which spin turns it, at the start; it goes along with "
                 "velocity");
+    key("free", free,
+        plane ? "of whole bodies: what it holds is rigid and moves by the forces on it, along x, y "
+                "and by turn, as its mass and inertia let it; then velocity and spin are those "
+                "with which it begins; []: it moves as it is told"
+              : "of whole bodies: what it holds is rigid and moves by the forces on it, along x, "
+                "y, z and by turn, as its mass and inertia let it; then velocity and spin are "
+                "those with which it begins; []: it moves as it is told");
+    key("force", force, plane ? "N/m" : "N", any_number,
+        "free: given force at its centre of mass, or a table of it over time");
+    key("torque", torque, plane ? "N" : "N m", any_number,
+        plane ? "free: given torque about its centre of mass, anticlockwise, or a table of it"
+              : "free: given torque about its centre of mass, or a table of it over time");
     history.each_key(key);
     key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
   }
@@ -105,6 +129,12 @@ struct SupportChangeOf {
   SupportServoConfig servo;
   OverTime<SpinOf<Vector>> spin{};                                    ///<  [rad/s]
   Vector point = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m]
+  std::vector<std::string> free{"same"};
+  OverTime<Vector> force{};           ///<  [N; in 2D N/m]
+  OverTime<SpinOf<Vector>> torque{};  ///<  [N m; in 2D N]
+
+  bool keeps_free() const { return free == std::vector<std::string>{"same"}; }
+  bool is_free() const { return !free.empty() && !keeps_free(); }
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -122,8 +152,16 @@ struct SupportChangeOf {
     key("point", point, "m", any_number,
         "a point of the axis of its turn, as the stage begins; left out: where its velocity has "
         "brought the one of before");
+    key("free", free,
+        "directions in which forces move what it holds, from now on; []: it goes where it is told; "
+        "left out: the same as before");
+    key("force", force, std::is_same_v<Vector, Vec2> ? "N/m" : "N", any_number,
+        "free: given force from now on, or a table of it over time since the stage began; left "
+        "out: none");
+    key("torque", torque, std::is_same_v<Vector, Vec2> ? "N" : "N m", any_number,
+        "free: given torque from now on, likewise");
     key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which both grow from zero, linearly");
+        "time since the stage began in which all of them grow from zero, linearly");
     key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
   }
 };

@@ -30,6 +30,9 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
       if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
       s->velocity = change.velocity;
       s->spin = change.spin;
+      if (!change.keeps_free()) s->free = change.free;
+      s->force = change.force;
+      s->torque = change.torque;
       s->history = {change.ramp, {}, {}, begin};
       s->servo = change.servo;
     }
@@ -127,6 +130,50 @@ void add_turn_problems(const Config& now, const std::string& stage,
   }
 }
 
+/// Whether a quantity is given at all.
+template <class Value>
+bool is_given(const OverTime<Value>& quantity) {
+  return quantity.is_table() || squared(quantity.value) > 0.0;
+}
+
+/// Problems of bodies that forces move, of a case as it is in a stage.
+template <class Config>
+void add_free_problems(const Config& now, const std::string& stage,
+                       const std::vector<std::string>& directions,
+                       std::vector<std::string>& problems) {
+  for (const auto& s : now.supports) {
+    const auto add = [&](const std::string& what) {
+      problems.push_back(stage + "support." + s.name + what);
+    };
+    const auto has = [](const std::vector<std::string>& list, const std::string& word) {
+      return std::find(list.begin(), list.end(), word) != list.end();
+    };
+    for (const std::string& word : s.free)
+      if (word != "turn" && !has(directions, word))
+        add(".free: \"" + word + "\" is no direction; allowed are x, y" +
+            (directions.size() > 2 ? ", z" : "") + ", turn");
+    if (!s.is_free()) {
+      if (is_given(s.force)) add(".force acts on what is free; free says in which directions");
+      if (is_given(s.torque)) add(".torque acts on what is free; free says how");
+      continue;
+    }
+    for (const std::string& word : directions)
+      if (!has(s.fix, word)) {
+        add(".free: a body that forces move is rigid, so fix must hold all of its directions");
+        break;
+      }
+    if (s.servo.is_on()) add(".servo: it leads what free lets go; a given force is `force`");
+    if (!s.is_turning() && is_given(s.torque)) add(".torque: free does not let it turn");
+    if (!s.is_turning() && is_given(s.spin)) add(".spin: free does not let it turn");
+    if (s.spin.is_table()) add(".spin: with free it is the one with which it begins, no table");
+    for (const auto& row : s.velocity.values)
+      for (int axis = 0; axis < static_cast<int>(directions.size()); ++axis)
+        if ((s.free_directions() >> axis & 1) != 0 && part_of(row, axis) != 0.0)
+          return add(".velocity: along " + directions[at(axis)] +
+                     ", which is free, no table leads it");
+  }
+}
+
 /// Problems of one stage by itself.
 /// @param directions  of the method: x, y, z
 template <class Config, class Stage>
@@ -161,6 +208,27 @@ void add_stage_problems(const Config& config, const Stage& stage,
   }
 }
 
+/// Problems of a stage that gives a velocity to what forces move by then.
+template <class Config>
+void add_begin_problems(const Config& config, const Config& now, std::size_t stage,
+                        std::vector<std::string>& problems) {
+  if (stage >= config.stages.size()) return;
+  for (const auto& change : config.stages[stage].supports) {
+    const auto s = std::find_if(now.supports.begin(), now.supports.end(),
+                                [&](const auto& support) { return support.name == change.name; });
+    if (s == now.supports.end() || !s->is_free()) continue;
+    const std::string where = "stage." + config.stages[stage].name + ".support." + change.name;
+    bool leads = is_given(change.spin);
+    for (int axis = 0; axis < 3; ++axis)
+      if ((s->free_directions() >> axis & 1) != 0 && part_of(change.velocity.value, axis) != 0.0)
+        leads = true;
+    if (leads)
+      problems.push_back(where +
+                         ": what is free goes on with the motion that it has; velocity and "
+                         "spin cannot lead it");
+  }
+}
+
 /// Problems of the stages of a case, as sentences, each once.
 /// @param config_at  config_at(config, progress): the case in a stage
 template <class Config, class At>
@@ -178,6 +246,8 @@ std::vector<std::string> problems_of_stages(const Config& config,
     const Config now = config_at(config, progress);
     add_servo_problems(now, stage, area, problems);
     add_turn_problems(now, stage, problems);
+    add_free_problems(now, stage, directions, problems);
+    add_begin_problems(config, now, k, problems);
   }
   return problems;
 }

@@ -48,7 +48,8 @@ void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Inde
     const std::size_t bytes = some.size() * sizeof some[0];
     copy_bytes(some.data(), Space::host, all.data() + first, all.space(), bytes);
     for (std::size_t t = first; t < end; ++t)
-      if (is_held(hold[t])) start(holds[at(hold[t])], some[t - first]);
+      if (is_held(hold[t]) && holds[at(hold[t])].loose == 0)
+        start(holds[at(hold[t])], some[t - first]);
     copy_bytes(all.data() + first, all.space(), some.data(), Space::host, bytes);
   }
 }
@@ -74,6 +75,69 @@ void hold_corner(const std::string& support, Index n, int bits, std::int16_t mot
   if (motion >= 0) hold.motion[corner] = motion;
 }
 
+/// A rigid body as the keys of its support say.
+/// @param set  of its corners
+template <class Vector, class Support>
+RigidBodyOf<Vector> rigid_body(const Support& support, std::size_t number, std::size_t set,
+                               std::int16_t motion) {
+  RigidBodyOf<Vector> body{number, set, motion, support.free_directions(), support.is_turning()};
+  body.force = scale_of(support.force);
+  body.force_over = amplitudes<Vector>(support.force, support.history);
+  body.torque = scale_of(support.torque);
+  body.torque_over = amplitudes<SpinOf<Vector>>(support.torque, support.history);
+  return body;
+}
+
+/// Refuses rigid bodies that hold a part of an element, or of what moves as one.
+template <class World, class Config, class Hold>
+void refuse_parts_of_bodies(const World& w, const Config& config, const std::vector<Hold>& holds,
+                            const std::vector<Index>& hold) {
+  using Shape = ShapeOf<World>;
+  if (w.rigid_bodies.empty() || !w.domain.single_rank()) return;
+  const auto motion_of_body = [&](std::size_t t) -> std::int16_t {
+    const Index own = hold[t];
+    return own < 0 || holds[at(own)].loose == 0 ? std::int16_t{-1} : holds[at(own)].motion[0];
+  };
+  const auto refuse = [&](std::int16_t motion, std::size_t t, const std::string& why) {
+    for (const auto& body : w.rigid_bodies)
+      if (body.motion == motion)
+        throw InputError("support." + config.supports[body.support].name +
+                         ".free: " + Shape::element + " " + std::to_string(t) + why);
+  };
+  constexpr int all = (1 << Shape::dimension) - 1;
+  for (std::size_t t = 0; t < hold.size(); ++t) {
+    if (hold[t] < 0 || holds[at(hold[t])].loose == 0) continue;
+    const Hold& h = holds[at(hold[t])];
+    std::int16_t motion = -1;
+    bool whole = true;
+    for (int k = 0; k < static_cast<int>(Shape::corners); ++k) {
+      if (h.motion[k] >= 0) motion = h.motion[k];
+      whole = whole && h.fixed_at(k) == all && h.motion[k] == h.motion[0];
+    }
+    if (!whole)
+      refuse(motion, t,
+             " has corners outside its region; a body that moves by forces is one of whole "
+             "elements, as `on` takes them");
+  }
+  std::vector<Index> starts, nodes, leader;
+  copy_to(starts, w.bundles.starts);
+  copy_to(nodes, w.bundles.nodes);
+  copy_to(leader, w.bundles.leader);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::size_t t = at(nodes[k] / Shape::corners),
+                      with = at(nodes[at(leader[k])] / Shape::corners);
+    const auto is_out = [&](std::size_t e) {
+      return hold[e] >= 0 && Shape::is_gone(holds[at(hold[e])]);
+    };
+    if (is_out(t) || is_out(with) || motion_of_body(t) == motion_of_body(with)) continue;
+    const bool first = motion_of_body(t) >= 0;
+    refuse(motion_of_body(first ? t : with), first ? t : with,
+           " moves as one with " + std::string(Shape::element) + " " +
+               std::to_string(first ? with : t) +
+               ", which it does not hold; joints must join them, or nothing");
+  }
+}
+
 /// Each corner follows the sum of the supports that hold it, each in its own directions.
 /// @param holds  those that there are already: of elements that have been taken out
 /// @param hold   place in `holds` of each element of the whole mesh, -1: it is free
@@ -85,16 +149,20 @@ void prescribe_supports(World& w, const Config& config, std::vector<Hold>& holds
   const std::size_t bodies = w.given->sets.size() - config.supports.size();
   w.prescribed.clear();
   w.servo_motions.clear();
+  w.rigid_bodies.clear();
   for (std::size_t s = 0; s < config.supports.size(); ++s) {
     const auto& support = config.supports[s];
     const int bits = fixed_directions(support);
-    const PrescribedMotionOf<Vector> prescribed = motion_of<Vector>(support);
+    PrescribedMotionOf<Vector> prescribed = motion_of<Vector>(support);
+    const bool loose = support.is_free() && bits != 0;
+    if (loose) prescribed.spin = {};  // with which it begins
     std::int16_t motion = -1;
-    if (norm(prescribed.velocity) > 0.0 || prescribed.turns() ||
+    if (norm(prescribed.velocity) > 0.0 || prescribed.turns() || loose ||
         (support.servo.is_on() && bits != 0)) {
       motion = static_cast<std::int16_t>(w.prescribed.size());
       if (support.servo.is_on())
         w.servo_motions.push_back({s, motion, support.servo.axis_number()});
+      if (loose) w.rigid_bodies.push_back(rigid_body<Vector>(support, s, bodies + s, motion));
       w.prescribed.push_back(prescribed);
     }
     if (bits == 0) continue;  // it lets go
@@ -106,10 +174,22 @@ void prescribe_supports(World& w, const Config& config, std::vector<Hold>& holds
         holds.emplace_back();
       }
       hold_corner(support.name, n, bits, motion, Shape{}, holds[at(own)]);
+      if (loose) holds[at(own)].loose = 1;
     }
   }
+  refuse_parts_of_bodies(w, config, holds, hold);
   copy_to(set_up(w).holds, holds);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
+}
+
+/// Whether a support ever lets a body move by forces.
+template <class Config>
+bool frees_any(const Config& config) {
+  const auto is_free = [](const auto& support) { return support.is_free(); };
+  return std::any_of(config.supports.begin(), config.supports.end(), is_free) ||
+         std::any_of(config.stages.begin(), config.stages.end(), [&](const auto& stage) {
+           return std::any_of(stage.supports.begin(), stage.supports.end(), is_free);
+         });
 }
 
 /// Supports of a new world. @param find  find(region, where): the corners in a region
@@ -118,6 +198,7 @@ void set_up_supports(World& w, const Config& config, const Find& find) {
   for (const auto& support : config.supports)
     set_up(w).sets.push_back({support.name, find(support.region, "support." + support.name)});
   w.sets_here.resize(w.given->sets.size());
+  if (frees_any(config)) w.rigid.resize(config.supports.size());
   const std::vector<Index> hold = ShapeOf<World>::prescribe(w, config);
   copy_to(ShapeOf<World>::elements(w).hold, hold);
   std::vector<typename ShapeOf<World>::Hold> holds;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr Color line_ink{0.10F, 0.11F, 0.13F}, white{1.0F, 1.0F, 1.0F};
 constexpr Color pulls{0.80F, 0.14F, 0.12F}, presses{0.07F, 0.55F, 0.87F};
+constexpr Color bolt_pulled{0.86F, 0.33F, 0.05F}, bolt_pressed{0.36F, 0.20F, 0.62F};
 constexpr Color support{0.05F, 0.45F, 0.42F};
 constexpr double cell = 17.0;  ///< of the grid by which marks are thinned  [units of text]
 
@@ -110,6 +111,16 @@ Overlay::Overlay(const Frame& frame, const RenderOptions& options, Coloring& col
     legend.notes.push_back("up to " + with_unit(largest_, stress_.unit()));
   }
   if (!options.walls) return;
+  bolts_ = !frame.bars.empty() && options.scale == 1.0;
+  if (bolts_) {
+    for (const FrameBar& bar : frame.bars)
+      if (const double force = std::fabs(1.0 * bar.force); std::isfinite(force))
+        strongest_ = std::max(strongest_, force);
+    legend.swatches.push_back({bolt_pulled, "bolts, pulled"});
+    legend.swatches.push_back({bolt_pressed, "bolts, pressed"});
+    legend.notes.push_back("bolts up to " +
+                           with_unit(strongest_, places_in(frame).plane() ? "N/m" : "N"));
+  }
   held_ = field_of(frame, Carrier::points, "held");
   if (held_ != nullptr &&
       std::none_of(held_->values.begin(), held_->values.end(), [](float h) { return h > 0.0F; }))
@@ -182,6 +193,20 @@ void Overlay::draw_contacts(Paper& paper, const OnPaper& on, int scale) const {
     if (is_on(paper, a) || is_on(paper, b))
       paper.stroke(a.u, a.v, b.u, b.v, (thin + wide * look.width) * scale, look.color);
   }
+}
+
+void Overlay::draw_bolts(Paper& paper, const OnPaper& on, int scale) const {
+  constexpr double thin = 1.0, wide = 2.6;
+  for (const bool halo : {true, false})
+    for (const FrameBar& bar : frame_.bars) {
+      if (on.keeps && !on.keeps(0.5 * (bar.begin + bar.end))) continue;
+      const ScreenPoint a = on.camera.project(bar.begin), b = on.camera.project(bar.end);
+      if (!is_on(paper, a) && !is_on(paper, b)) continue;
+      const double share = strongest_ > 0.0 ? std::fabs(1.0 * bar.force) / strongest_ : 0.0;
+      const double thick = thin + wide * (std::isfinite(share) ? share : 0.0) + (halo ? 1.4 : 0.0);
+      const Color color = halo ? white : bar.force < 0.0F ? bolt_pressed : bolt_pulled;
+      paper.stroke(a.u, a.v, b.u, b.v, thick * scale, color);
+    }
 }
 
 void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
@@ -273,6 +298,7 @@ void Overlay::draw_edges(Paper& paper, const OnPaper& on, int scale) const {
 void Overlay::draw(Paper& paper, const OnPaper& on, int scale) const {
   if (edges_) draw_edges(paper, on, scale);
   draw_contacts(paper, on, scale);
+  if (bolts_) draw_bolts(paper, on, scale);
   if (held_ != nullptr) draw_held(paper, on, scale);
   if (crosses_) draw_crosses(paper, on, scale);
   if (arrows_ != nullptr) draw_arrows(paper, on, scale);

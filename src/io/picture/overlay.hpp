@@ -1,5 +1,5 @@
 #pragma once
-// Marks over the items of a picture: arrows, crosses of stress, dots where supports hold.
+// Marks over the items of a picture: bolts, arrows, crosses of stress, dots where supports hold.
 
 #include <functional>
 
@@ -33,6 +33,7 @@ class Overlay {
   void draw_arrows(Paper& paper, const OnPaper& on, int scale) const;
   void draw_contacts(Paper& paper, const OnPaper& on, int scale) const;
   void draw_crosses(Paper& paper, const OnPaper& on, int scale) const;
+  void draw_bolts(Paper& paper, const OnPaper& on, int scale) const;
   void draw_held(Paper& paper, const OnPaper& on, int scale) const;
   void draw_edges(Paper& paper, const OnPaper& on, int scale) const;
 
@@ -42,8 +43,10 @@ class Overlay {
   bool edges_ = false, crosses_ = false;
   Stresses stress_;
   std::vector<ContactLook> contacts_;
-  double longest_ = 0.0;  ///< arrow, in the unit of its field
-  double largest_ = 0.0;  ///< principal stress  [Pa]
+  bool bolts_ = false;
+  double strongest_ = 0.0;  ///< force of a bolt  [N; in 2D N/m]
+  double longest_ = 0.0;    ///< arrow, in the unit of its field
+  double largest_ = 0.0;    ///< principal stress  [Pa]
 };
 
 }  // namespace breccia

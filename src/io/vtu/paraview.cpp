@@ -38,7 +38,7 @@ ColorBy(shown, (where, "damage"))
 GetColorTransferFunction("damage").RescaleTransferFunction(0.0, 1.0)
 shown.SetScalarBarVisibility(view, True)
 RenameSource("elements", elements)
-for kind in ("links", "contacts", "walls", "tetrahedra", "joints", "joint_contacts"):
+for kind in ("links", "contacts", "walls", "bolts", "tetrahedra", "joints", "joint_contacts"):
     path = os.path.join(here, kind + ".LIST")
     if not os.path.exists(path):
         continue
@@ -46,7 +46,7 @@ for kind in ("links", "contacts", "walls", "tetrahedra", "joints", "joint_contac
     RenameSource(kind, more)
     if kind == "walls":
         Show(more, view).Opacity = 0.3
-    elif kind == "tetrahedra":
+    elif kind in ("tetrahedra", "bolts"):
         Show(more, view)
     else:
         Hide(more, view)
@@ -101,7 +101,7 @@ ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time, F
   if (!holds_frames(folder)) return series;
   series.times_ = frame_times(folder);
   for (const char* kind :
-       {"contacts", "walls", frame_of_solids, joints_of_solids, contacts_of_solids})
+       {"contacts", "walls", "bolts", frame_of_solids, joints_of_solids, contacts_of_solids})
     if (std::filesystem::exists(folder + "/" + series.file_of(kind, 0)))
       series.kinds_.emplace_back(kind);
   series.listed_ = series.times_.size();
@@ -123,6 +123,7 @@ void ParaviewSeries::write(const FrameContents& frame) {
   add("links", frame.lines);
   add("contacts", frame.contacts);
   add("walls", frame.walls);
+  add("bolts", frame.bolts);
   for (const auto& [kind, content] : frame.more) add(kind, content);
   times_.push_back(frame.time);
   if (collections_are_due()) write_collections();

@@ -17,7 +17,7 @@ namespace breccia {
 ///   fields/links_0000.vtu     lines, or the triangles of joints in space, with their fields
 ///   fields/contacts_0000.vtu  what touches without a link: lines with their force
 ///   fields/walls_0000.vtu     walls as triangles, with the force on each; where there are some
-///   elements.pvd, links.pvd, contacts.pvd, walls.pvd
+///   elements.pvd, links.pvd, contacts.pvd, walls.pvd, bolts.pvd
 ///                             each series with its times; result.pvd: all in one, as parts of
 ///                             these names
 ///   tetrahedra.pvd, joints.pvd, joint_contacts.pvd

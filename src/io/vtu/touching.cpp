@@ -108,9 +108,31 @@ Frame walls_frame(const Frame& like, const Touching& sorted) {
   return frame;
 }
 
+Frame bolts_frame(const Frame& like, bool plane) {
+  Frame frame = begun(like);
+  const char* const unit = plane ? "N/m" : "N";
+  FrameField force{"force", unit, 1, {}}, across{"across", unit, 1, {}}, slip{"slip", "m", 1, {}};
+  std::vector<std::int32_t> bolt;
+  for (const FrameBar& bar : like.bars) {
+    for (const Vec3& end : {bar.begin, bar.end}) {
+      frame.lines.push_back(static_cast<std::int32_t>(frame.position.size()));
+      frame.position.push_back(end);
+    }
+    force.values.push_back(bar.force);
+    across.values.push_back(bar.across);
+    slip.values.push_back(bar.slip);
+    bolt.push_back(bar.bolt);
+  }
+  frame.line_fields = {std::move(force), std::move(across), std::move(slip),
+                       whole_numbers("bolt", std::move(bolt))};
+  return frame;
+}
+
 void add_touching(FrameContents& files, const Frame& like, Touching touching, FrameFormat format,
                   int threads) {
   touching.sort();
+  if (like.bolted)
+    files.bolts = contents_of(bolts_frame(like, touching.plane), threads, format).lines;
   files.contacts = contents_of(contacts_frame(like, touching), threads, format).lines;
   if (!like.walls.empty())
     files.walls = contents_of(walls_frame(like, touching), threads, format).points;

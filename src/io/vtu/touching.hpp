@@ -1,5 +1,5 @@
 #pragma once
-// Contacts of a frame, and the walls, as files of their own.
+// Contacts of a frame, bolts, and the walls, as files of their own.
 
 #include <vector>
 
@@ -32,7 +32,12 @@ Frame contacts_frame(const Frame& like, const Touching& sorted);
 /// on it). A plane without end is a rectangle around the model.
 Frame walls_frame(const Frame& like, const Touching& sorted);
 
-/// Adds both files; that of walls where there are some.
+/// The bolts of a frame as lines, with the fields `force` (along it, positive pulls), `across`,
+/// `slip` and `bolt` (its number).
+/// @param plane  forces are per metre of thickness
+Frame bolts_frame(const Frame& like, bool plane);
+
+/// Adds these files; those of walls and bolts where there are some.
 void add_touching(FrameContents& files, const Frame& like, Touching touching, FrameFormat format,
                   int threads);
 

@@ -437,6 +437,34 @@ std::vector<FrameContact> read_contacts(const std::string& folder, int index, co
   return contacts;
 }
 
+/// Adds the bolts, from the file that holds them.
+void add_bolts(const std::string& folder, int index, Frame& frame) {
+  if (!lists(folder, "bolts")) return;
+  frame.bolted = true;
+  const std::vector<Entry> entries = entries_of(folder, "bolts");
+  const auto number = static_cast<std::size_t>(index);
+  if (number >= entries.size()) return;
+  const std::unique_ptr<FrameFile> file = opened(folder + "/" + entries[number].file);
+  const std::size_t count = file->cells();
+  if (count == 0) return;
+  const std::vector<std::int32_t> ends = connectivity(*file, 2),
+                                  bolt = file->integers("CellData", "bolt", count);
+  const std::vector<double> place = file->numbers("Points", "Points", file->points()),
+                            force = file->numbers("CellData", "force", count),
+                            across = file->numbers("CellData", "across", count),
+                            slip = file->numbers("CellData", "slip", count);
+  if (place.size() != 3 * file->points() || force.size() != count || across.size() != count ||
+      slip.size() != count)
+    file->fail("its points are no vectors, or its forces are some");
+  const auto point = [&](std::size_t i) {
+    const auto from = 3 * static_cast<std::size_t>(ends[i]);
+    return Vec3{place[from], place[from + 1], place[from + 2]};
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    frame.bars.push_back({point(2 * i), point(2 * i + 1), static_cast<float>(force[i]),
+                          static_cast<float>(across[i]), static_cast<float>(slip[i]), bolt[i]});
+}
+
 }  // namespace
 
 bool add_contacts_of(const std::string& folder, int index, Frame& frame) {
@@ -450,9 +478,11 @@ bool add_contacts_of(const std::string& folder, int index, Frame& frame) {
 }
 
 Frame read_frame(const std::string& folder, int index) {
-  const Frame frame = read_kinds(folder, index, "elements", "links");
-  if (!lists(folder, frame_of_solids)) return frame;
-  return paired(frame, read_kinds(folder, index, frame_of_solids, joints_of_solids));
+  Frame frame = read_kinds(folder, index, "elements", "links");
+  if (lists(folder, frame_of_solids))
+    frame = paired(frame, read_kinds(folder, index, frame_of_solids, joints_of_solids));
+  add_bolts(folder, index, frame);
+  return frame;
 }
 
 }  // namespace breccia

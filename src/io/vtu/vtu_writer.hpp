@@ -31,6 +31,7 @@ struct FrameContents {
   std::string lines;          ///< lines, or triangles of joints in space, with their fields
   std::string contacts = {};  ///< lines between what touches; empty: no such file
   std::string walls = {};     ///< triangles; empty: no such file
+  std::string bolts = {};     ///< lines; empty: no such file
   /// Of a second method in the same run, by kind: "tetrahedra", ... (io/frame_pair.hpp).
   std::vector<std::pair<std::string, std::string>> more = {};
 };

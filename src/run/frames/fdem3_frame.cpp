@@ -188,6 +188,7 @@ FramePart frame_of(World& w, const World* mesh) {
   FrameOfTetrahedra(w, *elements, *joints, own, known, f).fill();
   const OnHost forces(w.couples.history.force, w.exec.space);
   add_pressing_couples(w, *elements, *forces, part.frame.contacts);
+  add_bars(w, f);
   if (!w.domain.single_rank())
     add_places(w, *elements, own, known, part.places, part.places.tetrahedron,
                part.places.triangle);

@@ -191,6 +191,7 @@ FramePart frame_of(World& w, const World* mesh) {
     const OnHost forces(w.couples.history.force.as<decltype(number)>(), w.exec.space);
     add_pressing_couples(w, *triangles, *forces, part.frame.contacts);
   });
+  add_bars(w, f);
   if (!w.domain.single_rank())
     add_places(w, *triangles, own, known, part.places, part.places.triangle, part.places.line);
   part.places.whole = w.domain.single_rank();

@@ -169,6 +169,8 @@ void FrameOfParts::see() {
   seen_.time = part_.frame.time;
   seen_.groups = part_.frame.groups;
   seen_.walls = part_.frame.walls;
+  seen_.bolted = part_.frame.bolted;
+  seen_.bars = part_.frame.bars;
   for (const Message& message : messages) sight.take(message);
 }
 

@@ -9,6 +9,7 @@
 #include "core/on_host.hpp"
 #include "core/precision.hpp"
 #include "domain/parcel.hpp"
+#include "fdem_shared/bolts/bolts.hpp"
 #include "fdem_shared/shape.hpp"
 #include "run/frames/fields.hpp"
 
@@ -210,6 +211,16 @@ void add_pressing_couples(const World& w, const Elements& t, const Buffer<Force>
     contacts.push_back({t.id.data()[from], t.id.data()[to], centroid(t.nodes.data()[from]),
                         centroid(t.nodes.data()[to]), force});
   }
+}
+
+/// Bolts that are there. All ranks call it.
+template <class World>
+void add_bars(const World& w, Frame& f) {
+  f.bolted = !w.given->bolts.empty();
+  for (const auto& s : fdem_shared::bolt_segments(w))
+    f.bars.push_back({fdem_shared::to_space(s.begin), fdem_shared::to_space(s.end),
+                      static_cast<float>(s.force), static_cast<float>(s.across),
+                      static_cast<float>(s.slip), static_cast<std::int32_t>(s.bolt)});
 }
 
 /// Where the items of a part stand in the whole: points of elements first, then those of cracks.

@@ -132,7 +132,8 @@ class CoupledMethod final : public Method {
     if (wish.files && leads(ranks_))
       output.files.more = {{frame_of_solids, solids.files.points},
                            {joints_of_solids, solids.files.lines},
-                           {contacts_of_solids, solids.files.contacts}};
+                           {contacts_of_solids, solids.files.contacts},
+                           {"bolts", solids.files.bolts}};
     if (!wish.picture) return output;
     FrameWish picture = wish;
     picture.files = false;

@@ -88,6 +88,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
       of.fields("joint_force", Loose<fdem3::JointForce>{"force", w.joints.force});
     });
     each_stored_bolt(w, visit);
+    each_stored_rigid(w, visit);
     each_stored_fluid(w, visit);
     each_stored_gas(w, visit);
   }

@@ -93,6 +93,7 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
       });
     });
     each_stored_bolt(w, visit);
+    each_stored_rigid(w, visit);
     each_stored_fluid(w, visit);
     each_stored_gas(w, visit);
   }

@@ -38,7 +38,10 @@ struct MeshSim {
   static void spread(World& part) { spread_fluid(part); }
   static void restore(World& part) { restore_fluid(part); }
   /// Corners that a stage sets free may need shorter steps than those it held.
-  static void begun(World& part) { part.next_dt = std::min(part.next_dt, choose_time_step(part)); }
+  static void begun(World& part) {
+    take_up_rigid_bodies(part);
+    part.next_dt = std::min(part.next_dt, choose_time_step(part));
+  }
   static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t) {
     return split_and_note(ledger, all).balance;
   }
@@ -170,6 +173,11 @@ struct MeshSim {
     });
   }
 
+  template <class Visit>
+  static void each_stored_rigid(World& w, const Visit& visit) {
+    for (std::size_t s = 0; s < w.rigid.size(); ++s)
+      visit("rigid." + std::to_string(s), w.rigid[s]);
+  }
   template <class Visit>
   static void each_stored_fluid(World& w, const Visit& visit) {
     if (has_fluid(w)) visit("fluid.time", w.fluid.time);

@@ -210,6 +210,7 @@ class SimMethod final : public Method {
 
   Frame frame() override {
     look_at_places();
+    foresee();
     return world_.of_whole([](World& w) {
       if (!w.servos.empty()) place_servos(w);  // parts steer them, and velocities are of a step
       return Sim::frame(w, nullptr).frame;
@@ -217,6 +218,7 @@ class SimMethod final : public Method {
   }
   FrameOutput frame_output(const FrameWish& wish) override {
     look_at_places();
+    foresee();
     World& w = world_.part();
     const int threads = w.exec.threads;
     if (single_rank()) return breccia::frame_output(Sim::frame(w, nullptr), wish, threads);
@@ -315,8 +317,14 @@ class SimMethod final : public Method {
     return w;
   }
 
+  /// Rigid bodies get the velocities of the step to come, by which theirs now are known.
+  void foresee() {
+    if constexpr (requires(World & w) { foresee_motions(w); })
+      at_once(world_.ranks(), [&] { foresee_motions(world_.part()); });
+  }
   /// Of all ranks, with what they have booked, on rank 0.
   Energies energies_of_all() {
+    foresee();
     World& w = world_.part();
     Energies all = held(w);
     if (single_rank()) return all;
@@ -333,6 +341,7 @@ class SimMethod final : public Method {
   }
   /// On rank 0.
   std::vector<double> read_now(const std::vector<ProbeConfig>& probes) {
+    foresee();
     World& w = world_.part();
     std::vector<double> values;
     if (single_rank()) {

@@ -23,13 +23,18 @@ namespace fs = std::filesystem;
 constexpr const char* lock_name = ".lock";
 
 /// Everything a run writes into its folder.
-constexpr std::array written_by_runs{"summary.json", "case.toml",           "history.csv",
-                                     "steps.csv",    "log.jsonl",           "pictures",
-                                     "fields",       "checkpoints",         "result.pvd",
-                                     "elements.pvd", "links.pvd",           "contacts.pvd",
-                                     "walls.pvd",    "contacts.hdf.series", "walls.hdf.series",
-                                     "report.html",  "curves.svg",          "render.png",
-                                     "crash.br",     "elements.hdf.series", "links.hdf.series"};
+constexpr std::array written_by_runs{"summary.json",     "case.toml",
+                                     "history.csv",      "steps.csv",
+                                     "log.jsonl",        "pictures",
+                                     "fields",           "checkpoints",
+                                     "result.pvd",       "elements.pvd",
+                                     "links.pvd",        "contacts.pvd",
+                                     "walls.pvd",        "contacts.hdf.series",
+                                     "walls.hdf.series", "bolts.pvd",
+                                     "bolts.hdf.series", "report.html",
+                                     "curves.svg",       "render.png",
+                                     "crash.br",         "elements.hdf.series",
+                                     "links.hdf.series"};
 
 bool holds_run(const std::string& path) {
   for (const char* name : {"summary.json", "history.csv", "checkpoints"})

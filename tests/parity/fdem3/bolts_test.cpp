@@ -269,5 +269,69 @@ TEST(BoltsInSpace, that_cannot_be_are_refused) {
       << refused(s);
 }
 
+/// Each of many bolts beside each other is soft enough for the corners that it pulls at; together
+/// they are not.
+TEST(BoltsInSpace, in_one_element_pull_together) {
+  Scene s = bolted();
+  s.config.bolts[0].name = "b0";
+  std::string said;
+  for (int k = 1; k < 400 && said.empty(); ++k) {
+    EXPECT_EQ(refused(s), "") << k;
+    s.config.bolts.push_back(s.config.bolts[0]);
+    s.config.bolts.back().name = "b" + std::to_string(k);
+    try {
+      s.world();
+    } catch (const InputError& error) {
+      said = error.what();
+    }
+  }
+  EXPECT_NE(said.find("bolts pull at"), std::string::npos) << said;
+  EXPECT_NE(said.find("together with"), std::string::npos) << said;
+}
+
+/// Frames have them from their stage on, with ends and forces as bolts.csv tells, on ranks, too.
+TEST(BoltsInSpace, are_in_frames) {
+  const Scene s = staged();
+  const auto at_end = [&](Communicator* ranks, const auto& look) {
+    const auto method = make_method(s.config, s.model, {}, ranks);
+    const Frame before = method->frame();
+    if (ranks == nullptr || ranks->rank() == 0) {
+      EXPECT_TRUE(before.bolted);
+      EXPECT_TRUE(before.bars.empty());
+    }
+    run_to(*method, s.config, ranks);
+    const Frame after = method->frame();
+    const std::vector<Table> tables = method->tables();
+    if (ranks != nullptr && ranks->rank() != 0) return;
+    look(after, tables);
+  };
+  std::vector<FrameBar> alone;
+  at_end(nullptr, [&](const Frame& frame, const std::vector<Table>& tables) {
+    alone = frame.bars;
+    const auto bolts = std::find_if(tables.begin(), tables.end(),
+                                    [](const Table& table) { return table.name == "bolts"; });
+    ASSERT_NE(bolts, tables.end());
+    ASSERT_EQ(alone.size() + 1, bolts->rows.size());
+    const std::size_t axes = bolts->columns.size() - 4;
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+      const std::vector<double>& row = bolts->rows[k];
+      EXPECT_EQ(alone[k].begin.x, row[1]);
+      EXPECT_EQ(alone[k].end.y, bolts->rows[k + 1][2]);
+      EXPECT_NEAR(alone[k].force, row[axes + 1], 1e-6 * std::abs(row[axes + 1]) + 1e-9);
+      EXPECT_NEAR(alone[k].slip, row[axes + 3], 1e-6 * std::abs(row[axes + 3]) + 1e-15);
+    }
+    EXPECT_GT(std::abs(alone[alone.size() / 2].force), 0.0F);
+  });
+  simulate_ranks(3, 5, [&](Communicator& ranks) {
+    at_end(&ranks, [&](const Frame& frame, const std::vector<Table>&) {
+      ASSERT_EQ(frame.bars.size(), alone.size());
+      for (std::size_t k = 0; k < alone.size(); ++k) {
+        EXPECT_EQ(frame.bars[k].force, alone[k].force);
+        EXPECT_EQ(frame.bars[k].end.y, alone[k].end.y);
+      }
+    });
+  });
+}
+
 }  // namespace bolts_in_space_test
 }  // namespace breccia

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/picture/picture.hpp"
 #include "io/vtu/paraview.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
@@ -143,6 +144,44 @@ TEST(Touching, a_series_lists_contacts_and_walls_and_goes_on_with_them) {
   ASSERT_EQ(read.walls.size(), 2U);
   EXPECT_EQ(read.walls[0].normal.z, 1.0);
   EXPECT_EQ(read.walls[1].corners.size(), 3U);
+}
+
+TEST(Touching, bolts_are_lines_with_forces_that_are_read_and_drawn) {
+  const ScratchFolder folder;
+  Frame frame = model();
+  frame.radius = {0.5, 0.5};
+  frame.bolted = true;
+  ParaviewSeries series(folder.path());
+  const auto write = [&](double time) {
+    frame.time = time;
+    FrameContents files = contents_of(frame);
+    add_touching(files, frame, touching({}), FrameFormat::vtu, 1);
+    series.write(files);
+  };
+  write(0.0);  // they come later
+  frame.bars = {{{0, 0, 0}, {0, 0, 1}, 5.0F, 0.25F, 1e-3F, 0},
+                {{0, 0, 1}, {1, 0, 1}, -2.5F, 0, 0, 1}};
+  write(1.0);
+  series.finish();
+  EXPECT_NE(read_whole_file(folder / "bolts.pvd").find("bolts_0001.vtu"), std::string::npos);
+  EXPECT_TRUE(read_frame(folder.path(), 0).bars.empty());
+  const Frame read = read_frame(folder.path(), 1);
+  ASSERT_EQ(read.bars.size(), 2U);
+  EXPECT_EQ(read.bars[0].end.z, 1.0);
+  EXPECT_EQ(read.bars[0].force, 5.0F);
+  EXPECT_EQ(read.bars[0].across, 0.25F);
+  EXPECT_EQ(read.bars[1].force, -2.5F);
+  EXPECT_EQ(read.bars[1].bolt, 1);
+
+  RenderOptions options;
+  options.field = "";
+  options.width = 64;
+  options.height = 64;
+  Frame bare = read;
+  bare.bars.clear();
+  EXPECT_NE(render(read, options).rgb, render(bare, options).rgb);
+  options.walls = false;
+  EXPECT_EQ(render(read, options).rgb, render(bare, options).rgb);
 }
 
 }  // namespace touching_test
