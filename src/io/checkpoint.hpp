@@ -18,7 +18,7 @@ namespace breccia {
 /// Collects the sections of a checkpoint and writes them at once.
 class CheckpointWriter {
  public:
-  /// What becomes of arrays of the host. copied: they may change. left: they stay as they are, and
+  /// Arrays of the host. copied: they may change. left: they stay as they are, and
   /// where they are, until the writer has written; it holds no copy of them.
   enum class Arrays : std::uint8_t { copied, left };
   explicit CheckpointWriter(Arrays arrays = Arrays::copied) : arrays_(arrays) {}

@@ -57,7 +57,7 @@ struct JointWork {
 /// One item for each joint, `force` has one more that stays zero; who writes it, in brackets, in
 /// the words of World. Constant: written by set-up; all of it moves with its joint between ranks.
 struct Joints {
-  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  /// Others read the fields that each_field visits, no more: host_copy() makes no other array.
   static constexpr bool is_arrays_alone = true;
 
   Buffer<Index> edge_a, edge_b;   ///< the two edges that it joins  [-]  (set-up, ranks)

@@ -29,7 +29,7 @@ using Corners = CornerVectors<double>;
 /// it, in brackets, in the words of World. Constant: written by set-up; all of it moves with its
 /// triangle between ranks.
 struct Triangles {
-  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  /// Others read the fields that each_field visits, no more: host_copy() makes no other array.
   static constexpr bool is_arrays_alone = true;
 
   Buffer<GlobalId> id;          ///< number of the triangle, kept for ever  [-]  (constant)

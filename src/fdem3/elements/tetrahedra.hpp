@@ -36,7 +36,7 @@ BR_HD constexpr int corner_of_face(int face, int place) {
 /// brackets, in the words of World. Constant: written by set-up; all of it moves with its
 /// tetrahedron between ranks.
 struct Tetrahedra {
-  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  /// Others read the fields that each_field visits, no more: host_copy() makes no other array.
   static constexpr bool is_arrays_alone = true;
 
   Buffer<GlobalId> id;             ///< number, kept for ever  [-]  (constant)

@@ -78,7 +78,7 @@ struct JointFailure {
 /// the middles of the edges (0, 1), (1, 2), (2, 0) of the face, a third of its area each. One item
 /// for each joint. Who writes it: as of Tetrahedra.
 struct Joints {
-  /// What each_field visits is all that others read of it: host_copy() makes no other array.
+  /// Others read the fields that each_field visits, no more: host_copy() makes no other array.
   static constexpr bool is_arrays_alone = true;
 
   Buffer<Index> face_a, face_b;     ///< the two faces that it joins  [-]  (set-up, ranks)

@@ -140,26 +140,21 @@ struct CaseReader::State {
       return false;
     }
     if (range.holds(value)) return true;
-    if (const auto typed = node.value_exact<std::string>())
-      add(&node, key + " = \"" + *typed + "\" is outside " + range_text(range) + unit, meaning);
-    else
-      add(&node,
-          key + " = " + number_text(value) + " is outside " + range_text(range) + unit +
-              (unit == " rad" && std::abs(value) <= 360.0
-                   ? "; did you mean \"" + number_text(value) + " deg\"?"
-                   : ""),
-          meaning);
+    const auto typed = node.value_exact<std::string>();
+    std::string text = key + " = " + (typed ? '"' + *typed + '"' : number_text(value)) +
+                       " is outside " + range_text(range) + unit;
+    if (!typed && unit == " rad") text += "; did you mean \"" + number_text(value) + " deg\"?";
+    add(&node, text, meaning);
     return false;
   }
   bool number(const toml::node& node, const std::string& key, double& to, const char* unit,
               const Range& range, const char* meaning) {
     double given = 0.0;
-    if (!quantity(node, key, unit, given) ||
-        !in_range(node, key, given, to, range, meaning,
-                  *unit == '-' ? "" : fmt::format(" {}", unit)))
-      return false;
-    to = given;
-    return true;
+    const std::string after = *unit == '-' ? "" : fmt::format(" {}", unit);
+    const bool good =
+        quantity(node, key, unit, given) && in_range(node, key, given, to, range, meaning, after);
+    if (good) to = given;
+    return good;
   }
   /// As many numbers as there are parts. False if there is a problem, which is then noted.
   template <std::size_t count>
