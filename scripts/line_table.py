@@ -79,11 +79,11 @@ READER = {
         ("", SHARED_METHOD.format(m="fdem") + "fdem/shape.hpp fdem/triangles/triangle* fdem/triangles/motion.hpp fdem/joints/joints.hpp fdem/joints/joint_kernels.hpp fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
          "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
          "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/step* fdem_shared/host_run.hpp "
-         "fdem_shared/motion.hpp fdem_shared/prescribed.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
+         "fdem_shared/motion.hpp fdem_shared/prescribed.hpp fdem_shared/stable_parts.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem/triangles/loads.hpp fdem_shared/bundle* fdem_shared/insertion* fdem_shared/separated.hpp fdem/fluid/* fdem_shared/fluid/* fdem_shared/sides_now.hpp fdem_shared/bolts/* fdem/bolts* fdem_shared/laws/* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/rigid* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
-        ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
-        ("", "fdem/stepping/* fdem_shared/wanted.hpp fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
+        ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/joint_stages.hpp fdem_shared/readings.hpp"),
+        ("", "fdem/stepping/* fdem_shared/columns.hpp fdem_shared/wanted.hpp fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
         ("", "nothing"),
         ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/ghosts.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],
