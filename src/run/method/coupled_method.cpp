@@ -129,11 +129,12 @@ class CoupledMethod final : public Method {
     const FrameOutput solids = tetrahedra_.method->frame_output(files);
     FrameOutput output;
     if (leads(ranks_)) output = breccia::frame_output(spheres, files, threads_);
-    if (wish.files && leads(ranks_))
+    if (wish.files && leads(ranks_)) {
       output.files.more = {{frame_of_solids, solids.files.points},
                            {joints_of_solids, solids.files.lines},
-                           {contacts_of_solids, solids.files.contacts},
-                           {"bolts", solids.files.bolts}};
+                           {contacts_of_solids, solids.files.contacts}};
+      if (!solids.files.bolts.empty()) output.files.more.emplace_back("bolts", solids.files.bolts);
+    }
     if (!wish.picture) return output;
     FrameWish picture = wish;
     picture.files = false;

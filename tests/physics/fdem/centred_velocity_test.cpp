@@ -36,7 +36,7 @@ Errors errors(double safety) {
         shown += 0.5 * w.triangles.mass.data()[t] * dot(v, v);
         old += 0.5 * w.triangles.mass.data()[t] * dot(half, half);
       }
-    const double probed = probe(w, {"kinetic", "", "kinetic", "sum"});
+    const double probed = probe(w, {"moving", "", "kinetic", "sum"});
     largest.probe = std::max(largest.probe, std::fabs(probed - kinetic) / start);
     largest.frame = std::max(largest.frame, std::fabs(shown - kinetic) / start);
     largest.half_step_old = std::max(largest.half_step_old, std::fabs(old - kinetic) / start);
