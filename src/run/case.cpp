@@ -235,7 +235,7 @@ Config read_all(const Source& source, const std::vector<std::string>& overrides)
   }
 }
 
-/// What is wrong with a method that does not exist, alone: keys depend on it.
+/// Refuses a method that does not exist by that problem alone: keys depend on it.
 template <class Source>
 void refuse_method(const Source& source, const std::vector<std::string>& overrides) {
   try {

@@ -114,7 +114,7 @@ class Method {
   virtual void load(const CheckpointReader* reader) = 0;
 };
 
-/// What a run does after it has looked at a state.
+/// The next act of a run that has looked at a state.
 enum class Then : std::uint8_t { steps, end };
 
 /// A copy for another thread where steps go on meanwhile: at the end of a run it would take as much
