@@ -48,14 +48,15 @@ struct TimeConfig {
 struct CheckpointConfig {
   double wall = 600.0;  ///< wall-clock time between checkpoints  [s]
   int steps = 0;        ///< steps between checkpoints; 0: by wall time only  [-]
-  int keep = 2;         ///< newest checkpoints kept  [-]
+  int keep = 2;         ///< newest checkpoints kept; 0: none is written  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {
     key("wall", wall, "s", positive, "wall-clock time from one checkpoint to the next");
     key("steps", steps, "-", Range{0, 1e9},
         "steps from one checkpoint to the next, besides the wall-clock rule; 0 switches it off");
-    key("keep", keep, "-", Range{1, 1000}, "how many of the newest checkpoints are kept");
+    key("keep", keep, "-", Range{0, 1000},
+        "how many of the newest checkpoints are kept; 0: none is written, not at the end either");
   }
 };
 

@@ -418,7 +418,9 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
         decltype(model_of(read, config)) model;
         collective_try(ranks, [&] {  // before any of them takes some
           const MemoryPlan plan = memory_plan(config);
-          refuse_without_memory(plan, plan.run_bytes, ranks_on_this_machine(ranks));
+          refuse_without_memory(plan,
+                                exec.space == Space::cuda ? plan.host_bytes : plan.run_bytes,
+                                ranks_on_this_machine(ranks));
         });
         collective_try(ranks, [&] {
           model = located(read, [&] { return model_of(read, config); });

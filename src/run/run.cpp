@@ -248,7 +248,7 @@ CheckpointWriter Run::record_state() const {
 }
 
 void Run::save_checkpoint(Then then) {
-  if (checkpoints_.last_step() == method_.steps()) return;
+  if (!checkpoints_.wanted() || checkpoints_.last_step() == method_.steps()) return;
   const Clock::time_point begin = Clock::now();
   const OutputTime time(plan_.timers, output_);
   method_.verify();
@@ -292,14 +292,14 @@ int Run::interrupted(int cause) {
   now.energy = method_.energy();
   now.status = "interrupted";
   now.exit_code = cause == wall_limit ? exit_at_wall_limit : 128 + cause;
-  now.message =
-      fmt::format("{} at step {}; state saved",
-                  cause == wall_limit ? "end of --max-wall" : signal_name(cause), method_.steps());
+  now.message = fmt::format(
+      "{} at step {}; {}", cause == wall_limit ? "end of --max-wall" : signal_name(cause),
+      method_.steps(), checkpoints_.wanted() ? "state saved" : "no state saved, as asked");
   on_first(plan_.ranks, [&] {
     log_->write(Level::warning, "end", method_.steps(), now.message);
     write_summary(now);
     progress_.end_line();
-    say(fmt::format("{}\n  go on with: breccia resume {}\n", now.message, folder_->path()));
+    say(fmt::format("{}\n{}", now.message, checkpoints_.way_on(folder_->path())));
   });
   return now.exit_code;
 }

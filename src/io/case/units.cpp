@@ -194,6 +194,7 @@ std::string slip_of_prefix(std::string_view given) {
 
 /// "Pa, kPa, MPa or GPa"
 std::string units_like(const std::string& wanted, const Unit& target) {
+  if (wanted == "N/m") return "N/m, kN/m or MN/m";
   for (const auto& row : usual_units()) {
     if (parse_unit(row.front())->powers != target.powers) continue;
     std::string text = row.front();
@@ -288,10 +289,10 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
   const std::string number_and = "\"" + std::string(digits) + " ";
   const std::optional<Unit> unit = parse_unit(rest);
   if (!unit || unit->powers != target.powers) {
-    problem = !unit
-                  ? "'" + std::string(rest) + "' is not a unit"
-                  : quoted + " is " + describe_dimension(*unit) + ", " +
-                        describe_dimension(target) + " is wanted, in " + units_like(wanted, target);
+    problem = !unit ? "'" + std::string(rest) + "' is not a unit"
+                    : quoted + " is " + describe_dimension(*unit) + ", " +
+                          (wanted == "N/m" ? "a force per length" : describe_dimension(target)) +
+                          " is wanted, in " + units_like(wanted, target);
     if (const std::string spelt = respelt(rest, target); !spelt.empty())
       meant(number_and + spelt + "\"");
     else if (const std::string hint = with_prefix_of(rest, wanted); unit && !hint.empty()) {

@@ -112,8 +112,8 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   const double contacts = config.bodies.size() > 1 || f.bonds > 0.0 ? 1.5 : 1.0;
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
-  f.gpu_s = f.steps * (0.4e-3 + 0.88e-9 * f.items);  // bench/notes/gpu.md, three sizes
-  f.gpu = "H100";
+  f.gpu_s = f.steps * (0.4e-3 + 0.67e-9 * f.items);  // bench/notes/gpu.md, four sizes
+  f.gpu = "H200";
   f.may_end_early = may_end_early(config.stages);
   const double pixels = pixels_of(config.output);
   f.memory = own_memory + memory_plan(config).run_bytes;

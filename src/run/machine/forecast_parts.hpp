@@ -135,7 +135,7 @@ inline void add_disk(Forecast& f, const CaseConfig& config, double pixels, std::
   const double history = std::min(rows, f.steps) * 19.0 * static_cast<double>(columns);
   const double kept = std::min<double>(config.checkpoint.keep, f.here_s / config.checkpoint.wall);
   const double each = rates.saved * f.items + rates.saved_bond * rich;
-  const double saved = std::max(1.0, std::floor(kept)) * each;
+  const double saved = config.checkpoint.keep > 0 ? std::max(1.0, std::floor(kept)) * each : 0.0;
   f.disk = fields + pictures + history + saved;
   const std::pair<double, const char*> parts[] = {
       {fields, "fields"}, {pictures, "pictures"}, {history, "history.csv"}, {saved, "checkpoints"}};

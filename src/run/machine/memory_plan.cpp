@@ -100,7 +100,7 @@ double tetrahedra_of(const fdem3::BodyConfig& body) {
 
 // Measured peaks: 50,000 and 200,000 packed elements with 6 links each, 64,000 and 257,000
 // triangles with 1.5 joints each, per item the same for both sizes to 3 %; 511,104 tetrahedra
-// with 2.
+// with 2, and 100 million on an H200.
 MemoryPlan memory_plan(const dem::Config& config) {
   constexpr double build = 640.0, linked = 2400.0, loose = 1000.0;  // bytes of an element
   MemoryPlan plan{.items = 0.0, .kind = "elements"};
@@ -116,6 +116,7 @@ MemoryPlan memory_plan(const dem::Config& config) {
     plan.build_bytes += build * count;
     plan.run_bytes += (grains ? loose : linked) * count;
   }
+  plan.host_bytes = plan.run_bytes;
   return plan;
 }
 
@@ -126,21 +127,26 @@ MemoryPlan memory_plan(const fdem::Config& config) {
   for (const fdem::BodyConfig& body : config.bodies)
     if (const double count = triangles_of(body); count < most) plan.items += count;
   plan.build_bytes = build * plan.items;
-  plan.run_bytes = run * plan.items;
+  plan.run_bytes = plan.host_bytes = run * plan.items;
   return plan;
 }
 
 MemoryPlan memory_plan(const fdem3::Config& config) {
   // Bytes of a tetrahedron with two joints: of a mesh of cubes, of one by gmsh with that program
-  // beside it, and of a run that draws pictures.
-  constexpr double cubes = 350.0, free = 900.0, run = 1600.0;
+  // beside it, of a run, and of one that writes frames; likewise on the host of a GPU, and of one
+  // that writes checkpoints there.
+  constexpr double cubes = 350.0, free = 900.0, whole = 1100.0, framed = 1600.0;
+  constexpr double host = 400.0, host_saved = 850.0, host_framed = 1250.0;
   MemoryPlan plan{.items = 0.0, .kind = "tetrahedra"};
   for (const fdem3::BodyConfig& body : config.bodies) {
     const double count = tetrahedra_of(body);
     plan.items += count;
     plan.build_bytes += (body.structured ? cubes : free) * count;
   }
-  plan.run_bytes = run * plan.items;
+  const bool frames = config.output.fields || (config.output.frames > 0 && config.output.pictures);
+  plan.run_bytes = (frames ? framed : whole) * plan.items;
+  plan.host_bytes =
+      (frames ? host_framed : config.checkpoint.keep > 0 ? host_saved : host) * plan.items;
   return plan;
 }
 
@@ -148,7 +154,7 @@ MemoryPlan memory_plan(const coupled::Config& config) {
   const MemoryPlan a = memory_plan(static_cast<const dem::Config&>(config.spheres)),
                    b = memory_plan(static_cast<const fdem3::Config&>(config.tetrahedra));
   return {a.items + b.items, "spheres and tetrahedra", a.build_bytes + b.build_bytes,
-          a.run_bytes + b.run_bytes};
+          a.run_bytes + b.run_bytes, a.host_bytes + b.host_bytes};
 }
 
 double available_memory(const std::string& root) {

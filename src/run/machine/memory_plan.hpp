@@ -17,6 +17,7 @@ struct MemoryPlan {
   const char* kind = "";  ///< that word
   double build_bytes = 0.0;
   double run_bytes = 0.0;
+  double host_bytes = 0.0;  ///< of a run whose world a GPU holds, on the host
 };
 MemoryPlan memory_plan(const dem::Config& config);
 MemoryPlan memory_plan(const fdem::Config& config);

@@ -20,12 +20,13 @@ void Checkpoints::open(const std::string& folder) {
 }
 
 bool Checkpoints::due(std::int64_t step, Clock::time_point now) const {
+  if (!wanted()) return false;
   if (config_.steps > 0 && step % config_.steps == 0) return true;
   return now - last_time_ >= std::chrono::duration<double>(config_.wall);
 }
 
 std::int64_t Checkpoints::next_step(std::int64_t step) const {
-  if (config_.steps <= 0) return std::numeric_limits<std::int64_t>::max();
+  if (config_.steps <= 0 || !wanted()) return std::numeric_limits<std::int64_t>::max();
   return (step / config_.steps + 1) * config_.steps;
 }
 
@@ -48,6 +49,10 @@ void Checkpoints::write(std::int64_t step, const CheckpointWriter& state) const 
     std::error_code ignored;  // an old checkpoint that stays does no harm
     fs::remove(file.path, ignored);
   }
+}
+
+std::string Checkpoints::way_on(const std::string& folder) const {
+  return wanted() ? fmt::format("  go on with: breccia resume {}\n", folder) : "";
 }
 
 std::vector<CheckpointFile> list_checkpoints(const std::string& folder) {
@@ -79,6 +84,8 @@ CheckpointReader newest_good_checkpoint(const std::string& folder,
     }
   }
   if (reasons.empty()) reasons = " (there is none)";
+  if (reasons.empty())
+    reasons = "; none is there: the run kept none (checkpoint.keep = 0) or ended before its first";
   throw CheckpointError(fmt::format("{}: no checkpoint can be read{}", folder, reasons));
 }
 

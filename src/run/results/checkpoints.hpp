@@ -21,6 +21,9 @@ class Checkpoints {
   /// Where they are written. @throws IoError if the folder cannot be made
   void open(const std::string& folder);
 
+  /// Whether any is kept; if not, none is due or written, and the run cannot be resumed.
+  bool wanted() const { return config_.keep > 0; }
+
   /// Whether the state after `step` is to be saved, by steps or by wall time.
   bool due(std::int64_t step, Clock::time_point now) const;
 
@@ -32,6 +35,9 @@ class Checkpoints {
   /// Writes that state, verifies it, then removes the oldest beyond those to keep.
   /// @throws IoError; the older checkpoints are then all there
   void write(std::int64_t step, const CheckpointWriter& state) const;
+
+  /// The line that tells how a run that was cut short goes on in `folder`; empty where none is kept.
+  std::string way_on(const std::string& folder) const;
 
   /// The step of the newest checkpoint that was begun, -1 if none.
   std::int64_t last_step() const { return last_step_; }

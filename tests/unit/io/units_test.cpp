@@ -79,6 +79,8 @@ TEST(Units, a_wrong_dimension_is_named_with_the_units_that_fit) {
             "\"1 ms\" is a time, a length is wanted, in m, nm, um, mm, cm or km");
   EXPECT_EQ(problem_of("2 kg", "m/s"),
             "\"2 kg\" is a mass, a velocity is wanted, in m/s, mm/s or km/h");
+  EXPECT_EQ(problem_of("10 kN", "N/m"),
+            "\"10 kN\" is a force, a force per length is wanted, in N/m, kN/m or MN/m");
 }
 
 TEST(Units, no_unit_is_proposed_that_nobody_means) {

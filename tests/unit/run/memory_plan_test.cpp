@@ -70,6 +70,27 @@ TEST(MemoryPlan, items_follow_from_counts_and_areas) {
   EXPECT_NEAR(memory_plan(fdem).items, 50'312.0, 0.1 * 50'312.0);  // of gmsh
 }
 
+TEST(MemoryPlan, frames_and_checkpoints_of_tetrahedra_count_where_they_are_written) {
+  fdem3::Config config;
+  config.bodies.resize(1);
+  config.bodies[0].shape = "box";
+  config.bodies[0].size = {1.0, 1.0, 1.0};
+  config.bodies[0].mesh_size = 0.1;
+  config.bodies[0].structured = true;
+  const auto plan = [&] { return memory_plan(config); };
+  ASSERT_NEAR(plan().items, 6000.0, 1.0);
+  const MemoryPlan framed = plan();
+  config.output.fields = config.output.pictures = false;
+  const MemoryPlan saved = plan();
+  config.checkpoint.keep = 0;
+  const MemoryPlan bare = plan();
+  EXPECT_GT(framed.run_bytes, saved.run_bytes);
+  EXPECT_EQ(saved.run_bytes, bare.run_bytes);  // a processor writes its own arrays
+  EXPECT_GT(framed.host_bytes, saved.host_bytes);
+  EXPECT_GT(saved.host_bytes, bare.host_bytes);
+  EXPECT_LT(framed.host_bytes, framed.run_bytes);
+}
+
 const std::string box = R"(
 time.end = "1 ms"
 [material.c30]

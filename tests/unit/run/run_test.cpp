@@ -207,6 +207,23 @@ TEST(Run, KeepsTheNewestCheckpoints) {
   EXPECT_EQ(files[2].step, 75);
 }
 
+TEST(Run, KeepsNoCheckpointIfNoneIsAskedFor) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.checkpoint.steps = 25;
+  plan.config.checkpoint.keep = 0;
+  run_fake(plan, scratch / "whole");
+  EXPECT_TRUE(list_checkpoints(scratch / "whole/checkpoints").empty());
+  EXPECT_EQ(summary_of(scratch / "whole")["status"], "done");
+  Trouble trouble;
+  trouble.signal_at = 60;
+  run_fake(plan, scratch / "cut", trouble);
+  EXPECT_TRUE(list_checkpoints(scratch / "cut/checkpoints").empty());
+  const std::string message = summary_of(scratch / "cut")["message"];
+  EXPECT_NE(message.find("no state saved"), std::string::npos) << message;
+  EXPECT_THROW(resume_fake(plan, scratch / "cut"), CheckpointError);
+}
+
 TEST(Run, GoesBackToAnOlderCheckpointIfTheNewestIsDamaged) {
   const ScratchFolder scratch;
   RunPlan plan = fake_plan();
