@@ -55,7 +55,7 @@ std::string model_digest(Config config) {
   config.audit = {};
   config.probes.clear();
   config.checks.clear();
-  return case_digest(completed_case(config));
+  return case_digest(without_comments(completed_case(config)));  // words may change
 }
 
 /// Fills in what follows from the configuration.
@@ -418,8 +418,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
         decltype(model_of(read, config)) model;
         collective_try(ranks, [&] {  // before any of them takes some
           const MemoryPlan plan = memory_plan(config);
-          refuse_without_memory(plan,
-                                exec.space == Space::cuda ? plan.host_bytes : plan.run_bytes,
+          refuse_without_memory(plan, exec.space == Space::cuda ? plan.host_bytes : plan.run_bytes,
                                 ranks_on_this_machine(ranks));
         });
         collective_try(ranks, [&] {

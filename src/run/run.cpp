@@ -64,7 +64,7 @@ void refuse_other_case(const CheckpointReader& checkpoint, const RunPlan& plan) 
   if (checkpoint.text("run.model_digest") == plan.model_digest) return;
   throw CheckpointError(
       fmt::format("the checkpoint is of another case than {}: bodies, materials, links, loads and "
-                  "[time] safety must be the same",
+                  "[time] safety must be the same, and so must the keys that the program knows",
                   plan.case_name));
 }
 

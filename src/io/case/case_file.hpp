@@ -342,6 +342,8 @@ std::string with_lines(const std::string& message, const std::string& path);
 std::string case_name(const std::string& path);
 /// The folder that the files a case names are looked for in.
 std::string case_folder(const std::string& path);
+/// The text of a case without what follows a # outside quotes: keys and values alone.
+std::string without_comments(const std::string& text);
 /// SHA-256 of a text, in hexadecimal digits.
 std::string case_digest(const std::string& text);
 

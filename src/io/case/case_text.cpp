@@ -168,6 +168,24 @@ void digest_block(std::array<std::uint32_t, 8>& hash, const unsigned char* block
 
 }  // namespace
 
+std::string without_comments(const std::string& text) {
+  std::string kept;
+  bool quoted = false, comment = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '\n')
+      quoted = comment = false;
+    else if (c == '"' && !comment)
+      quoted = !quoted;
+    else if (c == '#' && !quoted)
+      comment = true;
+    if (comment) continue;
+    kept += c;
+    if (c == '\\' && quoted && at + 1 < text.size()) kept += text[++at];
+  }
+  return kept;
+}
+
 std::string case_digest(const std::string& text) {
   std::array<std::uint32_t, 8> hash{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                     0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};

@@ -484,6 +484,11 @@ TEST(CaseFile, cases_are_named_by_folder_and_file) {
   EXPECT_EQ(case_folder("cases/rc_slab/small.toml"), "cases/rc_slab");
 }
 
+TEST(CaseFile, keys_and_values_remain_without_comments) {
+  EXPECT_EQ(without_comments("a = 1  # [-] one\n# of two\nb = \"# \\\"#\" # three \"\nc = 4"),
+            "a = 1  \n\nb = \"# \\\"#\" \nc = 4");
+}
+
 TEST(CaseFile, the_digest_is_sha_256) {
   EXPECT_EQ(case_digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(case_digest(std::string(1000, 'a')),
