@@ -258,7 +258,10 @@ Counts count(const World& w) {
   const OnHost fixed(w.elements.fixed, w.exec.space);
   const auto gone = [&](Index e) { return is_gone(fixed->data()[e]); };
   each_link(w, [&](LinkKind kind, Index a, Index b, bool broken) {
-    if (gone(a) || gone(b)) return;
+    if (gone(a) || gone(b)) {
+      n.removed += broken && gone(a) && gone(b) ? 1 : 0;  // others were let go
+      return;
+    }
     if (!broken)
       pieces.join(a, b);
     else

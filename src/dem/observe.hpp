@@ -42,9 +42,10 @@ void note_breaks(World& w);
 /// Counts of broken links and the like.
 struct Counts {
   std::array<Index, link_kinds> broken{};  ///< links, by kind
-  Index touching = 0;                      ///< contacts that press now
-  Index fragments = 0;                     ///< pieces held together by links
-  double largest_fragment = 0.0;           ///< share of the mass  [-]
+  Index removed = 0;              ///< broken links between elements that have been taken out
+  Index touching = 0;             ///< contacts that press now
+  Index fragments = 0;            ///< pieces held together by links
+  double largest_fragment = 0.0;  ///< share of the mass  [-]
 
   Index broken_links() const { return std::accumulate(broken.begin(), broken.end(), Index{0}); }
   Index broken_of(LinkKind kind) const { return broken[static_cast<std::size_t>(kind)]; }

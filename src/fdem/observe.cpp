@@ -57,7 +57,7 @@ std::vector<Crack> cracks(const World& w) {
   const Joints& j = *joints;
   const OnHost nodes(w.triangles.nodes, w.exec.space);
   const auto corner = [&](Index n) { return nodes->data()[n / 3].at[n % 3].position; };
-  return fdem_shared::cracks_of<Crack>(j, [&](Index i, double work) {
+  return fdem_shared::cracks_of<World, Crack>(j, gone_triangles(w), [&](Index i, double work) {
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     return Crack{i,
                  j.broke_at.data()[i],

@@ -49,7 +49,7 @@ std::vector<Crack> cracks(const World& w) {
   const OnHost<Joints> joints(w.joints, w.exec.space);
   const Joints& j = *joints;
   const OnHost nodes(w.tetrahedra.nodes, w.exec.space);
-  return fdem_shared::cracks_of<Crack>(j, [&](Index i, double work) {
+  return fdem_shared::cracks_of<World, Crack>(j, gone_tetrahedra(w), [&](Index i, double work) {
     const JointEnds e = JointEnds::of(j.face_a.data()[i], j.face_b.data()[i], j.turn.data()[i]);
     Vec3 a[3], b[3];
     for (int k = 0; k < 3; ++k) {

@@ -39,7 +39,7 @@ struct Crack {
   double mode;    ///< share of sliding in its work: 0 opening, 1 sliding  [-]
   double energy;  ///< work that it took  [J]
 };
-/// By time of break, then by number.
+/// By time of break, then by number; without those beside elements that have been taken out.
 std::vector<Crack> cracks(const World& w);
 
 /// A piece held together by joints and bonds.

@@ -23,4 +23,12 @@ bool any_broken(const World& w) {
   return any_joint(w, [](auto stage) { return stage == decltype(stage)::broken; });
 }
 
+template <class World>
+Index count_broken(const World& w) {
+  const OnHost stages(w.joints.stage, w.exec.space);
+  const auto all = stages->host();
+  return static_cast<Index>(std::count_if(
+      all.begin(), all.end(), [](auto stage) { return stage == decltype(stage)::broken; }));
+}
+
 }  // namespace breccia::fdem_shared

@@ -192,12 +192,14 @@ std::vector<double> damage(const World& w) {
 }
 
 /// By time of break, then by number. crack(joint, its work) makes one.
-template <class Crack, class Joints, class Make>
-std::vector<Crack> cracks_of(const Joints& j, const Make& crack) {
+/// @param gone  1: of each element that has been taken out; its cracks left with it
+template <class World, class Crack, class Joints, class Make>
+std::vector<Crack> cracks_of(const Joints& j, const std::vector<std::uint8_t>& gone,
+                             const Make& crack) {
   using Stage = std::remove_cvref_t<decltype(j.stage.data()[0])>;
   std::vector<Crack> all;
   for (Index i = 0; i < j.size(); ++i) {
-    if (j.stage.data()[i] != Stage::broken) continue;
+    if (j.stage.data()[i] != Stage::broken || is_beside_gone<World>(j, i, gone)) continue;
     const auto &work = j.work.data()[i], &inherited = inherited_work(j, i);
     all.push_back(crack(i, work.open + work.slide - inherited.open - inherited.slide));
   }

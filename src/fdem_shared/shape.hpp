@@ -84,6 +84,18 @@ BR_HD bool is_gone(const View<const Hold>& holds, Index hold) {
   return hold >= 0 && Shape::is_gone(holds[hold]);
 }
 
+/// Whether a joint has a side on an element that has been taken out.
+/// @param gone  1: of each element of this world that has been; empty: none has
+template <class World, class Joints>
+bool is_beside_gone(const Joints& joints, Index i, const std::vector<std::uint8_t>& gone) {
+  using Shape = ShapeOf<World>;
+  const auto is_out = [&](Index side) {
+    return gone[static_cast<std::size_t>(side / Shape::corners)] != 0;
+  };
+  return !gone.empty() &&
+         (is_out(Shape::side_a(joints).data()[i]) || is_out(Shape::side_b(joints).data()[i]));
+}
+
 /// The vertex of each node, where kernels can read it.
 template <class World>
 View<const Index> node_vertices(World& w) {

@@ -36,6 +36,31 @@ Totals totals(const Domain& domain, std::array<std::int64_t, link_kinds + 1> own
   return {own, static_cast<std::size_t>(last + 1.0)};
 }
 
+/// Numbers in the whole of the links, of all ranks, with an end that has been taken out, ascending:
+/// they left with it.
+template <class Links>
+std::vector<Index> links_taken_out(const World& w, const Elements& e, const Links& set) {
+  const std::vector<std::uint8_t>& removed = w.given->removed;
+  if (std::find(removed.begin(), removed.end(), 1) == removed.end()) return {};
+  const OnHost a(set.a, w.exec.space), b(set.b, w.exec.space);
+  const auto gone = [&](Index end) { return is_gone(e.fixed.data()[end]); };
+  std::vector<Index> out;
+  for (Index i = 0; i < set.size(); ++i)
+    if (w.domain.owns(a->data()[i]) && (gone(a->data()[i]) || gone(b->data()[i])))
+      out.push_back(w.domain.single_rank() ? i : set.numbers.data()[i]);
+  if (w.domain.single_rank()) return out;
+  Communicator& ranks = *w.domain.ranks;
+  std::vector<Message> messages(static_cast<std::size_t>(ranks.size()));
+  for (Message& message : messages) put_array(message, out);
+  out.clear();
+  for (const Message& message : ranks.exchange(std::move(messages))) {
+    const std::vector<Index> more = Unpacking(message).array<Index>();
+    out.insert(out.end(), more.begin(), more.end());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 /// Elements of a frame, and places of lines that end on them.
 class DemFrame {
  public:
@@ -48,7 +73,11 @@ class DemFrame {
     std::int16_t last_body = -1;
     for (const Index i : own_) last_body = std::max(last_body, e.group.data()[i]);
     std::array<std::int64_t, link_kinds + 1> items{};
-    w_.each_set([&](const auto& set) { items[static_cast<std::size_t>(set.kind)] = own(set); });
+    w_.each_set([&](const auto& set) {
+      const auto kind = static_cast<std::size_t>(set.kind);
+      out_[kind] = links_taken_out(w_, e, set);
+      items[kind] = own(set);
+    });
     items.back() = static_cast<std::int64_t>(own_.size());
     const Totals all = totals(w_.domain, items, last_body);
     Frame& f = part_.frame;
@@ -82,10 +111,25 @@ class DemFrame {
  private:
   template <class Links>
   std::int64_t own(const Links& links) const {
-    if (w_.domain.single_rank()) return links.size();
     const OnHost ends(links.a, w_.exec.space);
-    return std::count_if(ends->host().begin(), ends->host().end(),
-                         [this](Index a) { return w_.domain.owns(a); });
+    std::int64_t count = 0;
+    for (Index i = 0; i < links.size(); ++i)
+      count += w_.domain.owns(ends->data()[i]) && !is_out(links, i) ? 1 : 0;
+    return count;
+  }
+  template <class Links>
+  Index number_of(const Links& links, Index i) const {
+    return w_.domain.single_rank() ? i : links.numbers.data()[i];
+  }
+  /// Links of this kind with lower numbers that have been taken out.
+  std::ptrdiff_t out_before(LinkKind kind, Index number) const {
+    const std::vector<Index>& out = out_[static_cast<std::size_t>(kind)];
+    return std::lower_bound(out.begin(), out.end(), number) - out.begin();
+  }
+  template <class Links>
+  bool is_out(const Links& links, Index i) const {
+    const std::vector<Index>& out = out_[static_cast<std::size_t>(links.kind)];
+    return !out.empty() && std::binary_search(out.begin(), out.end(), number_of(links, i));
   }
 
   template <class Value>
@@ -189,7 +233,7 @@ class DemFrame {
       kind_ = static_cast<std::int32_t>(set.kind);
       for (const auto& g : set.groups)
         for (Index i = g.begin; i < g.end; ++i) {
-          if (!w_.domain.owns(arrays->a.data()[i])) continue;
+          if (!w_.domain.owns(arrays->a.data()[i]) || is_out(set, i)) continue;
           double pull = 0.0;
           if constexpr (std::remove_reference_t<decltype(set)>::swept)
             pull = norm(link_force(g.law, *arrays, *elements_, i));
@@ -199,7 +243,8 @@ class DemFrame {
                    pull);
           if (has_facets) add_crack(g.law, *arrays, i);
           if (!w_.domain.single_rank())
-            part_.places.line.push_back(static_cast<std::int32_t>(before + set.numbers.data()[i]));
+            part_.places.line.push_back(static_cast<std::int32_t>(
+                before + set.numbers.data()[i] - out_before(set.kind, set.numbers.data()[i])));
         }
       before += all.items[static_cast<std::size_t>(set.kind)];
       if (!set.swept) first_action += set.size();
@@ -270,7 +315,8 @@ class DemFrame {
   const dem::World& w_;
   OnHost<Elements> elements_;
   std::vector<Index> own_;
-  std::int32_t kind_ = 0;  ///< of the lines that are added now
+  std::array<std::vector<Index>, link_kinds> out_;  ///< links taken out, by kind: numbers
+  std::int32_t kind_ = 0;                           ///< of the lines that are added now
   std::vector<std::int32_t> kinds_, states_;
   std::vector<float> pull_;              ///< |force on b|  [N]
   std::vector<float> openings_, slips_;  ///< of cracks, if there are facets  [m]

@@ -69,7 +69,8 @@ std::vector<std::uint8_t> leave_out_removed(const World& w, OwnParts& own) {
   return gone;
 }
 
-/// @param gone  1: of each element that has been taken out; empty: none has
+/// @param gone  1: of each element of this rank that has been taken out; cracks beside them left
+///              with them
 template <class World, class Joints>
 void list_own(const World& w, const Joints& joints, const std::vector<std::uint8_t>& gone,
               OwnParts& own) {
@@ -78,6 +79,7 @@ void list_own(const World& w, const Joints& joints, const std::vector<std::uint8
     if (w.domain.owns(t) && (gone.empty() || gone[at(t)] == 0)) own.elements.push_back(t);
   for (Index i = 0; i < joints.size(); ++i)
     if (is_damaged(joints.stage.data()[i]) &&
+        !fdem_shared::is_beside_gone<World>(joints, i, gone) &&
         w.domain.owns(Shape::side_a(joints).data()[i] / Shape::corners))
       own.cracks.push_back(i);
 }
@@ -91,13 +93,15 @@ void list_open_sides(const World&, const Elements& elements, const Cracks& crack
   if (cracks.empty()) return;
   std::unordered_map<Index, Index> place;
   for (const Index t : own.elements) place[static_cast<Index>(elements.id.data()[t])] = t;
-  for (const auto& crack : cracks)
+  const auto is_out = [&](Index side) { return !gone.empty() && gone[at(side / corners)] != 0; };
+  for (const auto& crack : cracks) {
+    if (is_out(crack.a) || is_out(crack.b)) continue;  // a border now
     for (const Index side : {crack.a, crack.b}) {
-      if (!gone.empty() && gone[at(side / corners)] != 0) continue;
       const std::int32_t next = own.all_open++;
       const auto found = place.find(side / corners);
       if (found != place.end()) own.open.push_back({found->second, side % corners, next});
     }
+  }
 }
 
 /// Calls visit(node) for the corners of open sides, by their numbers on this rank.

@@ -104,6 +104,8 @@ struct DemSim {
     const dem::Counts n = dem::count(w);
     add("contacts.touching", n.touching);
     add("fracture.broken_links", n.broken_links());
+    if (const auto& out = w.given->removed; std::find(out.begin(), out.end(), 1) != out.end())
+      add("fracture.removed_links", n.removed);
     w.each_set([&](const auto& set) {
       add(std::string("fracture.broken_by_kind.") + set.name, n.broken_of(set.kind));
     });

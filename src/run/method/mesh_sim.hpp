@@ -8,6 +8,7 @@
 
 #include "core/energy_split.hpp"
 #include "fdem_shared/fluid/gas_source.hpp"
+#include "fdem_shared/joint_stages.hpp"
 #include "fdem_shared/shape.hpp"
 #include "run/method/loose_array.hpp"
 #include "run/method/sim_method.hpp"
@@ -87,6 +88,8 @@ struct MeshSim {
     }
     const auto count = static_cast<double>(all.size());
     add("fracture.broken_joints", count);
+    if (const auto& out = w.given->removed; std::find(out.begin(), out.end(), 1) != out.end())
+      add("fracture.removed_joints", fdem_shared::count_broken(w) - count);
     if (axes == 3) add("fracture.broken_area", area);
     add("fracture.first_break", all.empty() ? -1.0 : all.front().time);
     add("fracture.broken_by_mode.opening", count - sliding);
