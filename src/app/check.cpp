@@ -19,6 +19,8 @@
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
+#include "prepare/build_coupled.hpp"
+#include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/checks/check_tools.hpp"
 #include "run/case.hpp"
@@ -96,6 +98,7 @@ struct CheckCommand {
     const Case read = load_case(path, overrides);
     check_files(read);
     if (model && !allow_scripts) refuse_scripts(read);
+    std::unique_ptr<Method> built;
     std::visit(
         [&](const auto& config) {
           const MemoryPlan plan = memory_plan(config);
@@ -103,7 +106,7 @@ struct CheckCommand {
           std::optional<Forecast> expected;  // may refuse the case
           if (!read.model) expected = forecast_of(config, read);
           if (expected && !model && is_soon_built(*expected) && scripts_of(read).empty())
-            method_to_look_at(read);  // what run refuses of a mesh or a packing is refused here
+            built = method_to_look_at(read);  // what run refuses of a mesh or packing is refused
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                      counted(bodies_of(config), "body", "bodies"),
                      counted(materials_of(config), "material", "materials"),
@@ -113,7 +116,7 @@ struct CheckCommand {
                        harmless(fmt::format("{}", fmt::join(files, ", "))));
           fmt::print("\n");
           for (const std::string& note : read.notes) tell_note(note);
-          if constexpr (requires { config.walls; })
+          if constexpr (requires { prepare::doubtful_walls(config, read.folder); })
             for (const std::string& doubt : prepare::doubtful_walls(config, read.folder))
               tell_note(read.file.empty() ? doubt : with_lines(doubt, read.file));
           if constexpr (requires { config.links; }) {
@@ -130,6 +133,7 @@ struct CheckCommand {
         },
         read.config);
     if (model) tell_of_model(read);
+    if (built != nullptr) tell_warnings(*built, read);
   }
 
   /// Faults that specimens of its bodies show are told with file and lines.
@@ -178,6 +182,8 @@ struct CheckCommand {
       for (const std::string& doubt : prepare::doubtful_probes(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_loads(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_loads(config, read.folder)) tell(doubt);
+    if constexpr (requires { prepare::doubtful_in_situ(config, read.folder); })
+      for (const std::string& doubt : prepare::doubtful_in_situ(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_tools(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_tools(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::merged_lines(config, read.folder); })
@@ -313,10 +319,13 @@ struct CheckCommand {
         fmt::print("  {} {:.6g}{}\n", harmless(fact.path.substr(6)), fact.value, unit);
       }
     }
+    tell_warnings(*method, read);
+  }
+  static void tell_warnings(Method& method, const Case& read) {
     std::fflush(stdout);
-    for (const std::string& warning : method->warnings())
+    for (const std::string& warning : method.warnings())
       std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
-                             harmless(warning))
+                             harmless(read.file.empty() ? warning : with_lines(warning, read.file)))
                      .c_str(),
                  stderr);
   }

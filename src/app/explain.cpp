@@ -207,34 +207,58 @@ void print_wrapped(const std::string& text) {
   for (const std::string& line : wrapped(text, 76)) fmt::print("  {}\n", line);
 }
 
-/// Keys of exactly this name; without one, keys that keys_about() finds.
+/// Keys of exactly this name.
 std::vector<KeyInfo> named(const std::vector<KeyInfo>& keys, const std::string& word) {
   std::vector<KeyInfo> found;
   for (const KeyInfo& key : keys)
     if (key.path == word || key.path.ends_with("." + word)) found.push_back(key);
-  return found.empty() ? keys_about(keys, word) : found;
+  return found;
+}
+
+/// Keys of the table of this name, [word] or [[word]].
+std::vector<KeyInfo> in_table(const std::vector<KeyInfo>& keys, const std::string& word) {
+  std::vector<KeyInfo> found;
+  for (const KeyInfo& key : keys) {
+    const std::string heading = table_heading(key);
+    if (heading == "[" + word + "]" || heading == "[[" + word + "]]") found.push_back(key);
+  }
+  return found;
 }
 
 struct ExplainCommand {
   std::string key, svg;
 
   void execute() const {
-    const std::pair<const char*, std::vector<KeyInfo>> methods[] = {
-        {"dem3d", named(list_keys<dem::Config>(""), key)},
-        {"fdem2d", named(list_keys<fdem::Config>(""), key)},
-        {"fdem3d", named(list_keys<fdem3::Config>(""), key)},
-        {both_methods, named(keys_between(), key)}};
-    constexpr std::size_t most = 8;
-    std::size_t total = 0, largest = 0;
-    for (const auto& [method, keys] : methods) {
-      total += keys.size();
-      largest = std::max(largest, keys.size());
+    const std::pair<const char*, std::vector<KeyInfo>> all[] = {
+        {"dem3d", list_keys<dem::Config>("")},
+        {"fdem2d", list_keys<fdem::Config>("")},
+        {"fdem3d", list_keys<fdem3::Config>("")},
+        {both_methods, keys_between()}};
+    using OfMethod = std::pair<const char*, std::vector<KeyInfo>>;
+    std::vector<OfMethod> methods, tables;
+    const auto count = [](const std::vector<OfMethod>& of) {
+      std::size_t sum = 0;
+      for (const auto& [method, keys] : of) sum += keys.size();
+      return sum;
+    };
+    for (const auto& [method, keys] : all) {
+      methods.emplace_back(method, named(keys, key));
+      tables.emplace_back(method, in_table(keys, key));
     }
-    if (total == 0)
+    const bool is_table = count(tables) > 0;
+    if (count(methods) == 0 && !is_table)  // a word of theirs
+      for (std::size_t m = 0; m < methods.size(); ++m)
+        methods[m].second = keys_about(all[m].second, key);
+    constexpr std::size_t most = 8;
+    const std::size_t total = count(methods);
+    std::size_t largest = 0;
+    for (const auto& [method, keys] : methods) largest = std::max(largest, keys.size());
+    if (total == 0 && !is_table)
       throw InputError(key + " is not a key; breccia keys " + key + " searches for words");
     if (largest > most)
       throw InputError(
           fmt::format("{} may be {} keys; name one, as in material.{}", key, total, key));
+    for (const auto& [method, keys] : tables) tell_table(method, keys);
     const Law* drawn = nullptr;
     for (const auto& [method, keys] : methods)
       for (const KeyInfo& each : keys) {
@@ -251,6 +275,15 @@ struct ExplainCommand {
     if (!svg.empty()) fmt::print("{}: written\n", harmless(svg));
   }
 
+  static void tell_table(const std::string& method, const std::vector<KeyInfo>& keys) {
+    if (keys.empty()) return;
+    fmt::print("\n{}  (method {})\n", table_heading(keys.front()), method);
+    print_wrapped(keys.front().table_meaning);
+    for (const KeyInfo& key : keys) {
+      fmt::print("  {}\n", example_line(key));
+      for (const std::string& line : wrapped(key.meaning, 72)) fmt::print("      {}\n", line);
+    }
+  }
   static void tell(const std::string& method, const KeyInfo& key) {
     fmt::print("\n{} {}  (method {})\n", table_heading(key), example_line(key), method);
     print_wrapped(key.meaning);

@@ -156,7 +156,7 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
   } catch (const std::exception& error) {
     exit_code = tell(1, fmt::format("a fault of the program itself: {}", error.what()));
   }
-  if (std::fflush(stdout) != 0 && exit_code == 0)
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && exit_code == 0)
     exit_code = tell(file_error, "standard output: cannot be written");
   return exit_code;
 }

@@ -3,6 +3,7 @@
 #include "prepare/build.hpp"
 #include "prepare/build_fdem3.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/model_file.hpp"
@@ -85,6 +86,36 @@ void prepare::check_regions(const coupled::Config& config, const std::string* fo
 }
 void prepare::check_files(const coupled::Config& config, const std::string& case_folder) {
   of_both(config, [&](const auto& part) { prepare::check_files(part, case_folder); });
+}
+
+namespace {
+/// @param doubts_of  doubts_of(parts)
+template <class DoubtsOf>
+std::vector<std::string> doubts_of_part(const coupled::Config& config, const char* part,
+                                        const DoubtsOf& doubts_of) {
+  std::vector<std::string> doubts = doubts_of(coupled::parts_of(config));
+  for (std::string& doubt : doubts) doubt = of_part(part, doubt, config.stages);
+  return doubts;
+}
+}  // namespace
+
+std::vector<std::string> prepare::doubtful_walls(const coupled::Config& config,
+                                                 const std::string& folder) {
+  return doubts_of_part(config, "spheres", [&](const coupled::Parts& parts) {
+    return doubtful_walls(parts.spheres, folder);
+  });
+}
+std::vector<std::string> prepare::doubtful_loads(const coupled::Config& config,
+                                                 const std::string& folder) {
+  return doubts_of_part(config, "tetrahedra", [&](const coupled::Parts& parts) {
+    return doubtful_loads(parts.tetrahedra, folder);
+  });
+}
+std::vector<std::string> prepare::doubtful_in_situ(const coupled::Config& config,
+                                                   const std::string& folder) {
+  return doubts_of_part(config, "tetrahedra", [&](const coupled::Parts& parts) {
+    return doubtful_in_situ(parts.tetrahedra, folder);
+  });
 }
 
 }  // namespace breccia

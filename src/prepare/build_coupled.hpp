@@ -2,6 +2,7 @@
 // Cases of spheres and tetrahedra: their models, rules and files, as those of both methods.
 
 #include <string>
+#include <vector>
 
 #include "coupled/setup/config.hpp"
 #include "coupled/setup/model.hpp"
@@ -29,6 +30,12 @@ namespace prepare {
 
 void check_regions(const coupled::Config& config, const std::string* folder = nullptr);
 void check_files(const coupled::Config& config, const std::string& case_folder);
+
+/// Doubts of the parts, with their names: of walls (check_regions.hpp), loads, and stress at the
+/// start (check_in_situ.hpp).
+std::vector<std::string> doubtful_walls(const coupled::Config& config, const std::string& folder);
+std::vector<std::string> doubtful_loads(const coupled::Config& config, const std::string& folder);
+std::vector<std::string> doubtful_in_situ(const coupled::Config& config, const std::string& folder);
 
 }  // namespace prepare
 }  // namespace breccia

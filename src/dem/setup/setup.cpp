@@ -271,13 +271,21 @@ void tell_overlaps(const World& w, const Config& config, std::vector<std::string
     own.share = std::max(own.share, overlap / state->data()[element->data()[i]].radius);
     own.force += push->data()[i];
   }
-  for (std::size_t k = 0; k < of.size(); ++k)
-    if (of[k].share > little)
-      warnings.push_back(fmt::format(
-          "wall.{}: at the start {} elements reach into it, by up to {:.3g} mm ({:.0f} % of a "
-          "radius), and press with {:.3g} N; if that is not meant, move the wall back by as much",
-          config.walls[k].name, of[k].elements, 1e3 * of[k].deepest, 100.0 * of[k].share,
-          norm(of[k].force)));
+  for (std::size_t k = 0; k < of.size(); ++k) {
+    if (!(of[k].share > little)) continue;
+    std::string told = fmt::format(
+        "wall.{}: at the start {} elements reach into it, by up to {:.3g} mm ({:.0f} % of a "
+        "radius), and press with {:.3g} N; if that is not meant, move the wall back by as much",
+        config.walls[k].name, of[k].elements, 1e3 * of[k].deepest, 100.0 * of[k].share,
+        norm(of[k].force));
+    if (w.walls[k].shape == WallShape::plane) {
+      constexpr double beyond = 1e-3;  // of the overlap: what digits leave
+      const Vec3 to = w.walls[k].point - ((1.0 + beyond) * of[k].deepest) * w.walls[k].normal;
+      told += fmt::format(": with point = [{:.9g}, {:.9g}, {:.9g}] it begins without force",
+                          to.x + 0.0, to.y + 0.0, to.z + 0.0);
+    }
+    warnings.push_back(std::move(told));
+  }
 }
 
 World made(const Config& config, const Model& model, const Exec& exec) {

@@ -20,6 +20,7 @@
 #include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
+#include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem {
 
@@ -140,8 +141,10 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     Vec2 opening;
     if (!preset_opening(table.bonds[static_cast<std::size_t>(found)], strength.back(),
                         length.back(), dot(traction, across), dot(traction, unit), opening))
-      throw InputError("in_situ: the joint between triangles " + std::to_string(a) + " and " +
-                       std::to_string(b) + " is too weak for this stress");
+      throw InputError(fdem_shared::too_weak_for_stress(
+          "triangles " + std::to_string(a) + " and " + std::to_string(b), middle,
+          dot(traction, across), std::abs(dot(traction, unit)),
+          strength.back() * table.bonds[static_cast<std::size_t>(found)].tension));
     preset.back() = opening;
   }
   std::vector<JointEnds> ends;

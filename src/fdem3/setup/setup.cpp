@@ -75,15 +75,18 @@ std::uint8_t turn_between(const Model& model, Index a, Index b) {
 /// Opening and slip at which a joint carries the stress at the start.
 Vec3 preset_of(const Config& config, const JointBond& bond, double strength, double h,
                const Vec3 (&corner)[3], Index a, Index b) {
-  const Sym3 stress = config.in_situ.at((1.0 / 3.0) * (corner[0] + corner[1] + corner[2]));
+  const Vec3 middle = (1.0 / 3.0) * (corner[0] + corner[1] + corner[2]);
+  const Sym3 stress = config.in_situ.at(middle);
   const JointOpening o = opening_of(corner, corner);
   const Vec3 traction = stress * o.normal, across = cross(o.normal, o.along);
   Vec3 opening;
   if (!preset_opening(bond, strength, h,
                       {dot(traction, o.normal), dot(traction, o.along), dot(traction, across)},
                       opening))
-    throw InputError("in_situ: the joint between tetrahedra " + std::to_string(a) + " and " +
-                     std::to_string(b) + " is too weak for this stress");
+    throw InputError(fdem_shared::too_weak_for_stress(
+        "tetrahedra " + std::to_string(a) + " and " + std::to_string(b), middle,
+        dot(traction, o.normal), norm(traction - dot(traction, o.normal) * o.normal),
+        strength * bond.tension));
   return opening;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
-// Stress in situ and weight that do not bear each other.
+// Stress in situ that joints or weight do not bear.
 
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "fdem_shared/shape.hpp"
@@ -20,6 +21,26 @@ inline std::string numbers_of(const Vec3& v) {
   char text[96];
   std::snprintf(text, sizeof text, "%.6g, %.6g, %.6g", v.x + 0.0, v.y + 0.0, v.z + 0.0);
   return text;
+}
+
+/// The error that a joint cannot hold the stress at the start.
+/// @param elements       "triangles 3 and 9"  @param middle  of the joint  [m]
+/// @param normal, shear  its traction, pulled above 0, and size along it  [Pa]
+/// @param tension        what it bears across  [Pa]
+template <class Vector>
+std::string too_weak_for_stress(const std::string& elements, const Vector& middle, double normal,
+                                double shear, double tension) {
+  char how[200];
+  if (normal > 0.99 * tension)
+    std::snprintf(how, sizeof how,
+                  "it is pulled with %.4g Pa and bears %.4g Pa (tension is positive: rock under "
+                  "pressure has negative xx, yy%s)",
+                  normal, tension, std::is_same_v<Vector, Vec3> ? ", zz" : "");
+  else
+    std::snprintf(how, sizeof how, "%.4g Pa shear it under %.4g Pa of pressure", shear,
+                  -normal + 0.0);
+  return "in_situ: the joint between " + elements + " at (" + numbers_of(middle) +
+         ") m is too weak for this stress: " + how;
 }
 
 /// Stress in situ with a slope, or gravity without one, by which rock moves at once. Forces per

@@ -78,54 +78,6 @@ std::string problem_of(const std::string& key, const Bounds& region, const std::
       place(nearest->bounds->high[axis]));
 }
 
-void cut_to(Bounds& b, const std::array<double, 3>& low, const std::array<double, 3>& high) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    b.low[k] = std::max(b.low[k], low[k]);
-    b.high[k] = std::min(b.high[k], high[k]);
-  }
-}
-constexpr std::array<double, 3> nowhere_low{-no_limit, -no_limit, -no_limit},
-    nowhere_high{no_limit, no_limit, no_limit};
-
-Bounds bounds_of(const fdem::RegionConfig& r) {
-  if (r.outside) return {nowhere_low, nowhere_high};
-  Bounds b{{r.min.x, r.min.y, 0.0}, {r.max.x, r.max.y, 0.0}};
-  if (r.radius > 0.0)
-    cut_to(b, {r.center.x - r.radius, r.center.y - r.radius, 0.0},
-           {r.center.x + r.radius, r.center.y + r.radius, 0.0});
-  if (r.polygon.empty()) return b;
-  Vec2 low = r.polygon[0], high = low;
-  for (const Vec2& p : r.polygon) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  cut_to(b, {low.x, low.y, 0.0}, {high.x, high.y, 0.0});
-  return b;
-}
-/// Of a box in space and a sphere or cylinder.
-template <class Region>
-Bounds bounds_in_space(const Region& s) {
-  if (s.outside) return {nowhere_low, nowhere_high};
-  Bounds b{{s.min.x, s.min.y, s.min.z}, {s.max.x, s.max.y, s.max.z}};
-  if (!(s.radius > 0.0)) return b;
-  std::array<double, 3> low{s.center.x - s.radius, s.center.y - s.radius, s.center.z - s.radius},
-      high{s.center.x + s.radius, s.center.y + s.radius, s.center.z + s.radius};
-  for (std::size_t k = 0; k < 3; ++k)
-    if (s.around == std::string(1, "xyz"[k])) {
-      low[k] = -no_limit;
-      high[k] = no_limit;
-    }
-  cut_to(b, low, high);
-  return b;
-}
-
-Bounds bounds_of(const dem::SupportConfig& s) {
-  return bounds_in_space(s);
-}
-Bounds bounds_of(const fdem3::RegionConfig& r) {
-  return bounds_in_space(r);
-}
-
 Vec3 nearest_in(const Bounds& b, const Vec3& x) {
   return {std::clamp(x.x, b.low[0], b.high[0]), std::clamp(x.y, b.low[1], b.high[1]),
           std::clamp(x.z, b.low[2], b.high[2])};
@@ -161,11 +113,30 @@ Bounds bounds_of(const dem::Wall& wall, const std::vector<Vec3>& corners) {
   return b;
 }
 
+/// Whether a body is a box, a ball or an upright cylinder, as its outline tells it.
+bool is_plain(const dem::BodyConfig& body) {
+  return body.shape == "box" || body.shape == "sphere" || body.shape == "cylinder";
+}
+/// Whether a place within the box around such a body lies in it.
+bool lies_in(const dem::BodyConfig& body, const Vec3& x) {
+  Vec3 out = x - body.center;
+  if (body.shape == "cylinder") out.z = 0.0;
+  return body.shape == "box" || norm(out) <= body.radius * (1.0 + 1e-9);
+}
+
+/// Whether the middle of a wall that is no plane lies in a body.
+bool begins_in(const dem::Wall& wall, const dem::BodyConfig& body, const Bounds& b) {
+  if (wall.shape == dem::WallShape::plane || wall.shape == dem::WallShape::mesh || !is_plain(body))
+    return false;
+  const double depth = wall.shape == dem::WallShape::sphere ? 0.0 : 0.5 * wall.length;
+  const Vec3 x = wall.point - depth * wall.normal, near = nearest_in(b, x);
+  return norm(x - near) == 0.0 && lies_in(body, x);
+}
+
 /// How far a body reaches behind a wall's face; 0 where it does not, and of bodies whose outline is
 /// no box, ball or upright cylinder.  [m]
 double depth_behind(const dem::Wall& wall, const dem::BodyConfig& body, const Bounds& b) {
-  const bool ball = body.shape == "sphere", round = body.shape == "cylinder";
-  if (!ball && !round && body.shape != "box") return 0.0;
+  if (!is_plain(body)) return 0.0;
   constexpr int steps = 16;  // along each side; its ends are looked at, too
   double depth = 0.0;
   for (int i = 0; i <= steps; ++i)
@@ -175,10 +146,7 @@ double depth_behind(const dem::Wall& wall, const dem::BodyConfig& body, const Bo
           return b.low[axis] + (b.high[axis] - b.low[axis]) * n / steps;
         };
         const Vec3 x{at(0, i), at(1, j), at(2, k)};
-        Vec3 out = x - body.center;
-        if (round) out.z = 0.0;
-        if ((ball || round) && norm(out) > body.radius * (1.0 + 1e-9)) continue;
-        depth = std::max(depth, -dem::touch(wall, x).height);
+        if (lies_in(body, x)) depth = std::max(depth, -dem::touch(wall, x).height);
       }
   return depth;
 }
@@ -285,7 +253,7 @@ std::string problem_of_dug(const Config& config, const Load& load,
     outline.in_another = false;
     taken.push_back(outline);
   }
-  return problem_of("load." + load.name, bounds_of(load.region), "", taken);
+  return problem_of("load." + load.name, region_bounds(load.region), "", taken);
 }
 
 /// Supports, loads, bolts and sets of joints of meshes.
@@ -294,10 +262,11 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
   const std::vector<Outline> outlines = outlines_of(config, folder);
   std::vector<std::string> problems;
   for (const auto& s : config.supports)
-    problems.push_back(problem_of("support." + s.name, bounds_of(s.region), s.region.on, outlines));
+    problems.push_back(
+        problem_of("support." + s.name, region_bounds(s.region), s.region.on, outlines));
   for (const auto& load : config.loads) {
     problems.push_back(
-        problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
+        problem_of("load." + load.name, region_bounds(load.region), load.region.on, outlines));
     if (problems.back().empty()) problems.back() = problem_of_dug(config, load, outlines);
   }
   for (const auto& bolt : config.bolts)
@@ -325,7 +294,13 @@ std::string behind(const dem::Wall& wall, const dem::WallConfig& asked, const de
   double side = no_limit;
   for (std::size_t k = 0; k < 3; ++k) side = std::min(side, b.high[k] - b.low[k]);
   const double depth = depth_behind(wall, body, b);
-  if (!(depth > slight * side)) return "";
+  if (!(depth > slight * side)) {
+    if (!begins_in(wall, body, b)) return "";
+    return fmt::format(
+        "wall.{}.point: it begins inside of {}; what lies there will be thrown out, unless a cut "
+        "([[body.cut]]) makes room for it",
+        asked.name, outline.name);
+  }
   return fmt::format(
       "wall.{}.point: {} reaches {} behind the wall's face at the start; what lies there will be "
       "thrown out",
@@ -376,7 +351,7 @@ void check_regions(const dem::Config& config, const std::string* folder) {
   const std::vector<Outline> outlines = outlines_of(config, folder);
   std::vector<std::string> problems;
   for (const dem::SupportConfig& s : config.supports)
-    problems.push_back(problem_of("support." + s.name, bounds_of(s), s.on, outlines));
+    problems.push_back(problem_of("support." + s.name, region_bounds(s), s.on, outlines));
   for (const dem::BodyConfig& body : config.bodies) add_idle_cuts(body, problems);
   std::erase(problems, "");
   refuse(problems, "in the case");
@@ -433,7 +408,7 @@ std::vector<std::string> narrow_regions(const Config& config, const std::string&
   std::vector<std::string> doubts;
   for (const auto& load : config.loads) {
     if (!load.dug_by.empty()) continue;
-    const Bounds region = bounds_of(load.region);
+    const Bounds region = region_bounds(load.region);
     std::string narrow;
     bool wide = false;
     for (std::size_t i = 0; i < outlines.size(); ++i) {

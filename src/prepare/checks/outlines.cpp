@@ -132,7 +132,55 @@ Outline outline_of(const fdem3::BodyConfig& b, const std::string* folder) {
   return {b.name, around({b.center.x, b.center.y, b.center.z}, half)};
 }
 
+void cut_to(Bounds& b, const std::array<double, 3>& low, const std::array<double, 3>& high) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    b.low[k] = std::max(b.low[k], low[k]);
+    b.high[k] = std::min(b.high[k], high[k]);
+  }
+}
+constexpr std::array<double, 3> nowhere_low{-no_limit, -no_limit, -no_limit},
+    nowhere_high{no_limit, no_limit, no_limit};
+
+/// Of a box in space and a sphere or cylinder.
+template <class Region>
+Bounds bounds_in_space(const Region& s) {
+  if (s.outside) return {nowhere_low, nowhere_high};
+  Bounds b{{s.min.x, s.min.y, s.min.z}, {s.max.x, s.max.y, s.max.z}};
+  if (!(s.radius > 0.0)) return b;
+  std::array<double, 3> low{s.center.x - s.radius, s.center.y - s.radius, s.center.z - s.radius},
+      high{s.center.x + s.radius, s.center.y + s.radius, s.center.z + s.radius};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (s.around == std::string(1, "xyz"[k])) {
+      low[k] = -no_limit;
+      high[k] = no_limit;
+    }
+  cut_to(b, low, high);
+  return b;
+}
+
 }  // namespace
+
+Bounds region_bounds(const fdem::RegionConfig& r) {
+  if (r.outside) return {nowhere_low, nowhere_high};
+  Bounds b{{r.min.x, r.min.y, 0.0}, {r.max.x, r.max.y, 0.0}};
+  if (r.radius > 0.0)
+    cut_to(b, {r.center.x - r.radius, r.center.y - r.radius, 0.0},
+           {r.center.x + r.radius, r.center.y + r.radius, 0.0});
+  if (r.polygon.empty()) return b;
+  Vec2 low = r.polygon[0], high = low;
+  for (const Vec2& p : r.polygon) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  cut_to(b, {low.x, low.y, 0.0}, {high.x, high.y, 0.0});
+  return b;
+}
+Bounds region_bounds(const dem::SupportConfig& s) {
+  return bounds_in_space(s);
+}
+Bounds region_bounds(const fdem3::RegionConfig& r) {
+  return bounds_in_space(r);
+}
 
 std::vector<Outline> outlines_of(const dem::Config& config, const std::string* folder, bool radii) {
   std::vector<Outline> all;

@@ -17,6 +17,11 @@ struct Bounds {
   std::array<double, 3> low{}, high{};  ///<  [m]
 };
 
+/// The box around a region; without end of the complement of one.
+Bounds region_bounds(const dem::SupportConfig& support);
+Bounds region_bounds(const fdem::RegionConfig& region);
+Bounds region_bounds(const fdem3::RegionConfig& region);
+
 /// A body as regions see it.
 struct Outline {
   std::string name;

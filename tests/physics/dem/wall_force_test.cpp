@@ -105,18 +105,18 @@ TEST(WallForce, is_the_same_number_by_a_devices_schedule_and_on_ranks) {
 
 /// Two of three elements reach into the floor, one of them by a tenth of its radius.
 TEST(WallForce, of_elements_that_reach_into_a_wall_at_the_start_is_told) {
-  const auto told = [](double depth) {
+  const auto told = [](double depth, double floor = 0.0) {
     testing::Scene s;
     s.material("g", "grain", 1e9, 0.2, 2500.0);
     s.sphere({0.0, 0.0, 0.01 - depth}, 0.01);
     s.sphere({0.1, 0.0, 0.01 - 0.5 * depth}, 0.01);
     s.sphere({0.2, 0.0, 0.0101}, 0.01);
-    s.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+    s.wall({0.0, 0.0, floor}, {0.0, 0.0, 1.0});
     s.config.walls.back().name = "floor";
     const World w = s.world();
     double force = 0.0;
     for (const Vec3& push : w.wall_contacts.history.on_wall.host()) force -= push.z;
-    EXPECT_GT(force, 0.0);
+    EXPECT_EQ(force > 0.0, floor == 0.0);
     return std::pair(w.given->warnings, fmt::format("press with {:.3g} N", force));
   };
   EXPECT_TRUE(told(1e-5).first.empty());
@@ -127,6 +127,9 @@ TEST(WallForce, of_elements_that_reach_into_a_wall_at_the_start_is_told) {
                               "to 1 mm (10 % of a radius), and "))
       << warnings[0];
   EXPECT_NE(warnings[0].find(force), std::string::npos) << warnings[0];
+  EXPECT_TRUE(warnings[0].ends_with("with point = [0, 0, -0.001001] it begins without force"))
+      << warnings[0];
+  EXPECT_TRUE(told(1e-3, -0.001001).first.empty());
 }
 
 }  // namespace wall_force_test

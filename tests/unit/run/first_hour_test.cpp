@@ -79,6 +79,15 @@ TEST_F(FirstHour, explain_tells_formula_and_draws_the_law) {
   EXPECT_EQ(run("explain tensile_strenght"), 2);
 }
 
+TEST_F(FirstHour, explain_tells_the_keys_of_a_table) {
+  EXPECT_EQ(run("explain in_situ"), 0) << told;
+  EXPECT_TRUE(says("[in_situ]  (method fdem2d)") && says("xx_slope = ")) << told;
+  EXPECT_TRUE(says("[[stage.material]] in_situ = ")) << told;  // and the key of that name
+  EXPECT_EQ(run("explain load"), 0) << told;
+  EXPECT_TRUE(says("[[load]]  (method fdem3d)") && says("dug_by")) << told;
+  EXPECT_FALSE(says("may be")) << told;
+}
+
 TEST_F(FirstHour, keys_are_found_by_words_and_near_words_are_told) {
   EXPECT_EQ(run("keys young"), 0);
   EXPECT_TRUE(says("young = \"30 GPa\"")) << told;

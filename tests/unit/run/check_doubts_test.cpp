@@ -1,0 +1,162 @@
+// What `breccia check` and `run` doubt about a case that can be run, with line and key.
+
+#include <gtest/gtest.h>
+
+#include "io/whole_file.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace check_doubts_test {
+
+struct Told {
+  int exit_code;
+  std::string text;
+};
+
+class Doubts : public ::testing::Test {
+ protected:
+  Told told_by(const std::string& command, const std::string& text, const std::string& more = "") {
+    replace_file(path_, text);
+    const std::string output = folder_.path() + "/told.txt";
+    const int code = wait_for(start_program(command + " " + path_ + more, output));
+    std::string told = read_whole_file(output);
+    for (std::size_t at = told.find("\n "); at != std::string::npos; at = told.find("\n ", at))
+      told.erase(at, told.find_first_not_of(" \n", at) - at - 1), told[at] = ' ';  // folded lines
+    return {code, told};
+  }
+  Told run(const std::string& text) {
+    return told_by("run", text, " --steps 1 --force -o " + folder_.path() + "/out");
+  }
+  ScratchFolder folder_;
+  std::string path_ = folder_.path() + "/case.toml";
+};
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string rock = R"(breccia = 1
+method = "fdem2d"
+[time]
+end = "1 ms"
+[output]
+frames = 0
+[in_situ]
+xx = "-5 MPa"
+[material.stone]
+young = "30 GPa"
+[[body]]
+name = "rock"
+shape = "plate"
+structured = true
+material = "stone"
+size = ["1 m", "1 m"]
+mesh_size = "0.2 m"
+[[support]]
+name = "left"
+max = ["-0.49 m", "1 m"]
+)";
+
+TEST_F(Doubts, tell_what_bears_no_stress_in_situ) {
+  const std::string sentence =
+      "line 8, in_situ.xx: nothing bears the stress at the start, -5 MPa, on the side x = 500 mm "
+      "of rock: it expands from the first step on";
+  for (const Told& told : {told_by("check", rock), run(rock)}) {
+    EXPECT_EQ(told.exit_code, 0) << told.text;
+    EXPECT_TRUE(has(told.text, sentence)) << told.text;
+  }
+  const std::string held = rock + "[[support]]\nname = \"right\"\nmin = [\"0.49 m\", \"-1 m\"]\n";
+  EXPECT_FALSE(has(told_by("check", held).text, "nothing bears"));
+}
+
+TEST_F(Doubts, tell_why_a_joint_is_too_weak_for_the_stress) {
+  std::string pulled = rock;
+  pulled.replace(pulled.find("-5 MPa"), 6, "20 MPa");
+  const Told told = run(pulled);
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text, "line 7, in_situ: the joint between triangles ")) << told.text;
+  EXPECT_TRUE(has(told.text, "it is pulled with ")) << told.text;
+  EXPECT_TRUE(has(told.text, "tension is positive: rock under pressure has negative xx, yy"))
+      << told.text;
+}
+
+const std::string packed = R"(breccia = 1
+method = "dem3d"
+[time]
+end = "1 ms"
+[output]
+frames = 0
+[material.c]
+young = "30 GPa"
+[[body]]
+name = "block"
+shape = "box"
+material = "c"
+size = ["0.1 m", "0.1 m", "0.1 m"]
+pack = { count = 300 }
+)";
+
+TEST_F(Doubts, tell_of_tools_that_begin_inside_of_a_body) {
+  const std::string ball =
+      "[[wall]]\nname = \"ball\"\nshape = \"sphere\"\nradius = \"1 mm\"\npoint = [";
+  const Told inside = told_by("check", packed + ball + "\"11 mm\", 0.0, \"17 mm\"]\n");
+  EXPECT_EQ(inside.exit_code, 0) << inside.text;
+  EXPECT_TRUE(has(inside.text, "wall.ball.point: it begins inside of block")) << inside.text;
+  EXPECT_TRUE(has(inside.text, "line ")) << inside.text;
+  const Told outside = told_by("check", packed + ball + "0.0, 0.0, \"51 mm\"]\n");
+  EXPECT_FALSE(has(outside.text, "begins inside")) << outside.text;
+  const Told punch = told_by(
+      "check", packed +
+                   "[[wall]]\nname = \"punch\"\nshape = \"cylinder\"\nradius = \"1 mm\"\nlength = "
+                   "\"10 mm\"\npoint = [0.0, 0.0, \"48 mm\"]\nnormal = [0.0, 0.0, -1.0]\n");
+  EXPECT_FALSE(has(punch.text, "begins inside")) << punch.text;  // its middle is above
+}
+
+/// Plain check builds small models, and then tells what set-up doubts.
+TEST_F(Doubts, of_set_up_are_told_by_a_plain_check_of_small_models) {
+  const std::string floor = packed + "[[wall]]\nname = \"floor\"\npoint = [0.0, 0.0, \"-49 mm\"]\n";
+  const Told told = told_by("check", floor);
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_TRUE(has(told.text, "wall.floor: at the start ")) << told.text;
+  EXPECT_TRUE(has(told.text, "it begins without force")) << told.text;
+}
+
+TEST_F(Doubts, look_at_both_parts_of_a_case_of_both_methods) {
+  const Told told = told_by("check", R"(breccia = 1
+method = ["dem3d", "fdem3d"]
+[time]
+end = "1 ms"
+[output]
+frames = 0
+[spheres.material.grain]
+law = "grain"
+[[spheres.body]]
+name = "ball"
+shape = "element"
+material = "grain"
+center = [0.0, 0.0, "20 mm"]
+radius = "5 mm"
+[[spheres.wall]]
+name = "lid"
+point = [0.0, 0.0, "1 m"]
+normal = [0.0, 0.0, -1.0]
+[tetrahedra.material.rock]
+young = "30 GPa"
+joints = "none"
+[tetrahedra.in_situ]
+zz = "-2 MPa"
+[[tetrahedra.body]]
+name = "block"
+shape = "box"
+material = "rock"
+size = [0.1, 0.1, 0.02]
+structured = true
+mesh_size = "20 mm"
+)");
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_TRUE(has(told.text, "spheres.wall.lid.point: no body touches the wall")) << told.text;
+  EXPECT_TRUE(has(told.text, "tetrahedra.in_situ.zz: nothing bears")) << told.text;
+}
+
+}  // namespace check_doubts_test
+}  // namespace breccia
