@@ -17,6 +17,7 @@
 #include "io/whole_file.hpp"
 #include "run/case.hpp"
 #include "run/machine/memory_plan.hpp"
+#include "run/method/shown.hpp"
 #include "run/results/result_folder.hpp"
 
 namespace breccia::app {
@@ -31,13 +32,50 @@ Case case_at(const std::string& path, const std::vector<std::string>& overrides,
     return load_case(path, overrides);
   } catch (const InputError& error) {
     std::string text = error.what();
-    for (const lab::SweepAxis& axis : axes) {
-      const std::string set = "--set " + axis.key;
-      for (std::size_t at = text.find(set); at != std::string::npos; at = text.find(set, at + 1))
-        text.replace(at, 5, "--over");
-    }
+    for (const lab::SweepAxis& axis : axes)
+      for (std::size_t end = axis.key.find('.');; end = axis.key.find('.', end + 1)) {
+        const std::string set = "--set " + axis.key.substr(0, end);
+        for (std::size_t at = text.find(set); at != std::string::npos; at = text.find(set, at + 1))
+          text.replace(at, 5, "--over");
+        if (end == std::string::npos) break;
+      }
     throw InputError(text);
   }
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at))
+    text.replace(at, from.size(), to), at += to.size();
+}
+
+/// Names of numbers that no run will have are refused before any runs: they are looked at as those
+/// of checks are.
+void refuse_measures(const Case& base, const std::vector<std::string>& measures) {
+  std::visit(
+      [&](auto config) {
+        std::vector<CheckConfig> asked;
+        for (const std::string& measure : measures) {
+          const auto is_it = [&](const CheckConfig& check) { return check.name == measure; };
+          if (std::any_of(config.checks.begin(), config.checks.end(), is_it)) continue;
+          CheckConfig& check = asked.emplace_back();
+          check.name = check.value = measure;
+          if (measure.starts_with("probe.") && measure.ends_with(".peak"))
+            check.value = measure.substr(0, measure.size() - 4) + "max";
+        }
+        config.checks = asked;
+        try {
+          check_shown(config);
+        } catch (const InputError& error) {
+          std::string text = error.what();
+          for (const CheckConfig& check : asked)
+            replace_all(text, fmt::format("check.{}.value = {:?}", check.name, check.value),
+                        "--measure " + check.name);
+          replace_all(text, "in the case", "with what is to be measured");
+          replace_all(text, ".max or .at", ".max or .peak");
+          throw InputError(text);
+        }
+      },
+      base.config);
 }
 
 struct SweepCommand {
@@ -48,6 +86,7 @@ struct SweepCommand {
 
   int execute() const {
     const Case base = load_case(path, overrides);
+    refuse_measures(base, measures);
     if (!options.allow_scripts) refuse_scripts(base);
     std::vector<lab::SweepAxis> axes;
     for (const std::string& text : over) axes.push_back(lab::sweep_axis(text));

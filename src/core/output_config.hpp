@@ -16,14 +16,15 @@ struct MoreFields {
 
 /// [output]
 struct OutputConfig {
-  int frames = 20;                ///< frames over the whole run, besides the one at the start  [-]
-  double history = 0.0;           ///< time between history rows; 0: 1000 rows over the run  [s]
-  bool fields = true;             ///< write ParaView files
-  std::string format = "vtu";     ///< of ParaView files
-  bool pictures = true;           ///< write a PNG a frame
-  bool report = false;            ///< write report.html at the end
-  bool step_times = false;        ///< write steps.csv
-  std::vector<std::string> more;  ///< fields of frames besides the usual ones
+  int frames = 20;             ///< frames over the whole run, besides the one at the start  [-]
+  double history = 0.0;        ///< time between history rows; 0: 1000 rows over the run  [s]
+  bool fields = true;          ///< write ParaView files
+  std::string format = "vtu";  ///< of ParaView files
+  bool pictures = true;        ///< write a PNG a frame
+  bool report = false;         ///< write report.html at the end
+  bool step_times = false;     ///< write steps.csv
+  std::vector<std::string> curves;    ///< "force over deflection": a probe over another one
+  std::vector<std::string> more;      ///< fields of frames besides the usual ones
   std::vector<double> picture_steps;  ///< steps since the start of the case  [-]
   std::string color = "damage";
   std::vector<double> range;  ///< values at the ends of the colours; empty: those of each frame
@@ -62,6 +63,9 @@ struct OutputConfig {
     key("step_times", step_times,
         "write steps.csv, a row a step: its simulated time, the wall time it took, searches for "
         "contacts in it; a GPU then computes one step at a time");
+    key("curves", curves,
+        "plots of a probe over another one, as \"force over deflection\", first in curves.svg and "
+        "in the report; - before a name turns its sign");
     key("more", more,
         "fields that frames hold besides the usual ones: displacement, force (of links and "
         "contacts), and for spheres stress");

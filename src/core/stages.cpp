@@ -24,13 +24,16 @@ std::string list_of(const std::vector<std::string>& names) {
 }  // namespace
 
 std::optional<ProbeRule> ProbeRule::parsed(const std::string& text) {
-  const std::size_t sign = text.find_last_of("<>");
-  if (sign == std::string::npos) return std::nullopt;
-  ProbeRule rule{trimmed(text.substr(0, sign)), text[sign] == '>', 0.0};
-  const std::string number = trimmed(text.substr(sign + 1));
+  const std::size_t sign = text.find_first_of("<>=!");
+  if (sign == std::string::npos || text[sign] == '=' || text[sign] == '!') return std::nullopt;
+  const std::size_t width = text.find('=', sign) == sign + 1 ? 2 : 1;
+  ProbeRule rule{trimmed(text.substr(0, sign)), text.substr(sign, width), 0.0, ""};
+  const std::string number = trimmed(text.substr(sign + width));
   const char* const end = number.data() + number.size();
   const auto [stop, error] = std::from_chars(number.data(), end, rule.limit);
-  if (rule.probe.empty() || error != std::errc{} || stop != end) return std::nullopt;
+  if (rule.probe.empty() || error != std::errc{}) return std::nullopt;
+  rule.unit = trimmed({stop, end});
+  if (rule.unit.find_first_of("<>=!&|,") != std::string::npos) return std::nullopt;
   return rule;
 }
 
@@ -74,12 +77,15 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
       const std::optional<ProbeRule> rule = ProbeRule::parsed(s.when);
       if (!rule)
         problems.push_back(where + ".when = \"" + s.when +
-                           "\" is not of the form \"probe > number\" (or <, in SI units)");
+                           "\" is not of the form \"probe > 2 kN\": the name of one probe, one "
+                           "of <, <=, > and >=, and a number, with a unit or in SI");
       else if (!std::isfinite(rule->limit))
         problems.push_back(where + ".when = \"" + s.when + "\": no probe reads more or less");
       else if (!is_probe(rule->probe))
         problems.push_back(where + ".when: \"" + rule->probe +
                            "\" is not a probe; there are: " + list_of(probes));
+      else if (!rule->unit.empty())
+        problems.push_back(where + ".when = \"" + s.when + "\": " + rule->unit + " is no unit");
     }
     if (i == 0 && !s.remove.empty())
       problems.push_back(where +

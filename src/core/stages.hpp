@@ -36,8 +36,8 @@ struct StageEnd {
         "it ends when the kinetic energy has been at most this share of the elastic energy at ten "
         "looks in succession, one every 100 steps; 0: not at rest");
     key("when", when,
-        "it ends when a probe says so, as in \"force > 2e3\": the name of a probe, > or <, and a "
-        "number in SI units; looked at every 100 steps");
+        "it ends when a probe says so, as in \"force > 2 kN\": the name of a probe, one of <, <=, "
+        "> and >=, and a number, with a unit or in SI; looked at every 100 steps");
     key("drop", drop, "-", Range{0.0, 1.0, Open::high},
         "it ends when the size of the probe drop_of has fallen by this share of its largest in "
         "this "
@@ -56,13 +56,16 @@ struct StageEnd {
   bool ends() const { return until > 0.0 || rest > 0.0 || !when.empty() || drop > 0.0; }
 };
 
-/// "probe > number".
+/// "probe > number", also with <, >= or <=.
 struct ProbeRule {
-  std::string probe;
-  bool above = true;
+  std::string probe, sign;
   double limit = 0.0;
+  std::string unit;  ///< behind the number; empty: SI
 
-  bool holds(double value) const { return above ? value > limit : value < limit; }
+  bool holds(double value) const {
+    if (sign.size() > 1 && value == limit) return true;
+    return sign[0] == '>' ? value > limit : value < limit;
+  }
   /// None: the text is no such rule.
   static std::optional<ProbeRule> parsed(const std::string& text);
 };

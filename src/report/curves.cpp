@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
+#include "core/probe_curve.hpp"
 #include "io/picture/line_plot.hpp"
 #include "io/round_numbers.hpp"
 
@@ -45,6 +47,18 @@ LinePlot plot_of(const Column& x, const Columns& columns) {
   return plot;
 }
 
+/// A column as a curve takes it: its name and values with their sign.
+std::optional<Column> taken(const NumberTable& table, const ProbeCurve::Axis& axis) {
+  const Column* const column = table.column(axis.probe);
+  if (column == nullptr) return std::nullopt;
+  Column turned = *column;
+  if (axis.sign < 0.0) {
+    turned.name = "-" + turned.name;
+    turned.values = scaled(turned.values, axis.sign);
+  }
+  return turned;
+}
+
 bool is_strain(const Column& column) {
   std::string name = column.name;
   std::transform(name.begin(), name.end(), name.begin(),
@@ -74,6 +88,12 @@ std::string curves_of(const Record& record) {
   }
   if (time == nullptr || by_unit.empty()) return "";
   std::vector<LinePlot> plots;
+  for (const std::string& text : record.scene.curves)
+    if (const std::optional<ProbeCurve> curve = ProbeCurve::parsed(text)) {
+      const std::optional<Column> x = taken(record.history, curve->x),
+                                  y = taken(record.history, curve->y);
+      if (x && y) plots.push_back(plot_of(*x, {&*y}));
+    }
   for (const auto& [unit, columns] : by_unit)
     if (strain != nullptr && unit == "Pa") plots.push_back(plot_of(*strain, columns));
   for (const auto& [unit, columns] : by_unit) plots.push_back(plot_of(*time, columns));

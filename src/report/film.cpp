@@ -152,6 +152,7 @@ class Cutter {
       add_elements(planes, shot);
       add_lines(planes, shot, frame);
       add_contacts(planes, shot, frame);
+      add_bolts(planes, shot, frame);
       film.blobs.push_back(base64(deflated(planes.bytes())));
       frames.push_back(std::move(frame));
       first_ = false;
@@ -239,6 +240,23 @@ class Cutter {
     planes.add(force, 1);
   }
 
+  /// Both ends, and the force along it; of bolts that bear nothing in any frame the middle step.
+  void add_bolts(Planes& planes, const Shot& shot, Json& frame) const {
+    if (survey_.bolts == 0) return;
+    frame["bolts"] = shot.bolts.size();
+    const auto largest = static_cast<float>(survey_.bolt_force > 0.0 ? survey_.bolt_force : 1.0);
+    const Scale scale{-largest, largest, 254, false};
+    std::vector<Vec3> ends;
+    Numbers force;
+    for (const FrameBar& bolt : shot.bolts) {
+      ends.push_back(bolt.begin);
+      ends.push_back(bolt.end);
+      force.push_back(scale.step_of(bolt.force));
+    }
+    for (int axis = 0; axis < grid_.axes; ++axis) planes.add(grid_.of(ends, axis), grid_.width);
+    planes.add(force, 1);
+  }
+
   static void add_field(Planes& planes, const StoredField& field,
                         const std::vector<FrameField>& values, const Numbers& items) {
     const FrameField* const found = field_named(values, field.field->name);
@@ -279,6 +297,7 @@ class Cutter {
     if (survey_.spheres()) film["largest_radius"] = radius_scale().high;
     film["groups"] = survey_.groups;
     if (survey_.contact_force > 0.0) film["contact_force"] = survey_.contact_force;
+    if (survey_.bolts > 0) film["bolt_force"] = survey_.bolt_force;
     film["fields"] = Json::array();
     for (const StoredField& f : fields_)
       film["fields"].push_back({{"name", f.field->name},

@@ -7,6 +7,7 @@
 #include <bit>
 #include <filesystem>
 
+#include "core/probe_curve.hpp"
 #include "io/json.hpp"
 #include "report/breakage.hpp"
 #include "report/bundle.hpp"
@@ -54,6 +55,9 @@ class Writer {
     json["warnings"] = record.warnings;
     json["color"] = record.scene.color;
     json["view"] = record.scene.view;
+    if (!record.scene.curves.empty())
+      if (const auto curve = ProbeCurve::parsed(record.scene.curves.front()))
+        json["curve"] = {{"x", curve->x.probe}, {"y", curve->y.probe}};
     json["bar_radius"] = record.scene.bar_radius;
     json["walls"] = Json::array();
     for (const Wall& wall : record.scene.walls)

@@ -84,6 +84,8 @@ Scene scene_of(const std::string& case_text) {
   if (const toml::table* const output = all["output"].as_table()) {
     scene.color = text(*output, "color");
     scene.view = text(*output, "view");
+    if (const toml::array* const curves = (*output)["curves"].as_array())
+      for (const toml::node& curve : *curves) scene.curves.push_back(curve.value_or(std::string()));
   }
   add_materials(all, scene);
   each_of(all, "body", [&](const toml::table& body) {

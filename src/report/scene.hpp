@@ -32,7 +32,8 @@ struct Strength {
 /// A case as far as a report draws and judges it. What the file does not tell stays empty.
 struct Scene {
   std::string title;
-  std::string color, view;  ///< of the run's own pictures
+  std::string color, view;          ///< of the run's own pictures
+  std::vector<std::string> curves;  ///< "force over deflection": a probe over another one
   std::vector<Wall> walls;
   std::vector<Region> regions;
   std::vector<Strength> strengths;               ///< in the order of the file

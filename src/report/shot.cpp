@@ -120,6 +120,7 @@ Shot read_shot(const std::string& folder, int number) {
   const std::int64_t step = frame.step;
   const double time = frame.time;
   std::vector<std::string> groups = std::move(frame.groups);
+  std::vector<FrameBar> bolts = std::move(frame.bars);
   const bool solid = !frame.tetrahedra.empty();
   std::vector<FrameField> line_fields =
       std::move(solid ? frame.triangle_fields : frame.line_fields);
@@ -129,6 +130,7 @@ Shot read_shot(const std::string& folder, int number) {
   shot.time = time;
   shot.groups = std::move(groups);
   shot.contacts = std::move(contacts);
+  shot.bolts = std::move(bolts);
   shot.line_fields = std::move(line_fields);
   sort_by_id(shot);
   return shot;

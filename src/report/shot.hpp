@@ -26,6 +26,7 @@ struct Shot {
   std::vector<Vec3> end;
   std::vector<FrameField> line_fields;
   std::vector<FrameContact> contacts;  ///< that press without a link, the strongest first
+  std::vector<FrameBar> bolts;         ///< pieces of those that are there
   std::vector<std::string> groups;     ///< names for the field "group"
 
   bool spheres() const { return !plane && !solid; }

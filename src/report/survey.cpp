@@ -98,6 +98,10 @@ Survey survey_of(const std::string& folder, std::size_t count) {
     survey.contacts = std::max(survey.contacts, shot.contacts.size());
     if (!shot.contacts.empty())
       survey.contact_force = std::max(survey.contact_force, norm(shot.contacts.front().force));
+    survey.bolts = std::max(survey.bolts, shot.bolts.size());
+    for (const FrameBar& bolt : shot.bolts)
+      if (std::isfinite(bolt.force))
+        survey.bolt_force = std::max(survey.bolt_force, std::abs(static_cast<double>(bolt.force)));
     if (!shot.spheres() || shot.ends != survey.first.ends) survey.lines_constant = false;
     survey.frames.push_back(
         {static_cast<int>(k), shot.step, shot.time, shot.lines(), broken_by_kind(shot)});

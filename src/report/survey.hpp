@@ -37,6 +37,8 @@ struct Survey {
   std::vector<std::string> groups;
   std::size_t contacts = 0;    ///< of the frame that has most
   double contact_force = 0.0;  ///< the largest  [N; N/m of triangles]
+  std::size_t bolts = 0;       ///< pieces of them in the frame that has most
+  double bolt_force = 0.0;     ///< the largest in size  [N; N/m of triangles]
   std::vector<FrameFacts> frames;
   Shot first, last;
 

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "exec/error.hpp"
+#include "io/case/suggestion.hpp"
 #include "io/case/units.hpp"
 #include "io/whole_file.hpp"
 
@@ -106,11 +108,20 @@ void split_name(Column& column) {
   column.name = std::string(trimmed(name.substr(0, open)));
 }
 
-/// Numbers with a unit that is known become SI.
-void to_si(Column& column) {
+/// Numbers become SI. @throws InputError where the unit is none
+void to_si(const std::string& path, Column& column) {
   if (column.unit.empty()) return;
   const std::optional<Unit> unit = parse_unit(column.unit);
-  if (!unit) return;
+  if (!unit) {
+    static const std::set<std::string> usual{
+        "m",   "mm",  "um", "s",  "ms", "us",  "min",  "N",   "kN",  "MN", "Pa",  "kPa",
+        "MPa", "GPa", "J",  "kg", "g",  "m/s", "mm/s", "deg", "rad", "%",  "N/m", "kN/m"};
+    throw InputError(fmt::format(
+        "{}: \"{}\", the unit of column {}, is no unit{}; allowed are units as of case files, such "
+        "as {}; without brackets and without a line of units a column is drawn as it is",
+        path, column.unit, column.name, suggestion(column.unit, usual),
+        fmt::join(std::vector<const char*>{"mm", "ms", "kN", "MPa", "mm/s", "%", "-"}, ", ")));
+  }
   for (const char* known : {"m", "s", "N", "Pa", "J", "kg", "m/s", "m/s2", "N/m", "J/m2", "J/m",
                             "rad", "N m", "1/s", "-"}) {
     if (parse_unit(known)->powers != unit->powers) continue;
@@ -178,7 +189,7 @@ NumberTable read_measured(const std::string& path) {
                      "and what was measured there");
   for (Column& column : table.columns) {
     if (column.unit.empty()) split_name(column);
-    to_si(column);
+    to_si(path, column);
   }
   return table;
 }

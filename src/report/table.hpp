@@ -27,9 +27,9 @@ NumberTable read_table(const std::string& path);
 /// A table of measurements, the first column being x: a line of names, perhaps one of units, then
 /// numbers. Commas, semicolons or tabulators stand between them; next to semicolons and tabulators
 /// a number may have a decimal comma. A unit may also stand behind a name, as in "force [kN]" or
-/// "force (kN)"; numbers with a known unit become SI. Empty lines and lines that start with # are
+/// "force (kN)"; its numbers become SI. Empty lines and lines that start with # are
 /// passed over, empty fields are gaps (no number).
-/// @throws IoError if it cannot be read, InputError naming the line of what is wrong
+/// @throws IoError if it cannot be read, InputError naming the line or the unit that is wrong
 NumberTable read_measured(const std::string& path);
 
 }  // namespace breccia::report

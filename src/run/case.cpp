@@ -17,6 +17,7 @@
 #include "prepare/build_fdem.hpp"
 #include "prepare/build_fdem3.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/checks/check_stages.hpp"
 #include "prepare/checks/refusal.hpp"
@@ -31,6 +32,7 @@
 #include "run/method/fdem_method.hpp"
 #include "run/method/shown.hpp"
 #include "run/run.hpp"
+#include "run/unknown_keys.hpp"
 
 namespace breccia {
 namespace {
@@ -61,10 +63,12 @@ std::string model_digest(Config config) {
 /// Fills in what follows from the configuration.
 Case completed(Case read) {
   std::visit(
-      [&](const auto& config) {
+      [&](auto& config) {
         located(read, [&] {
           prepare::refuse_all(
-              "in the case", [&] { check_case(config); }, [&] { prepare::check_regions(config); });
+              "in the case",
+              [&] { prepare::refuse(prepare::put_ends_in_si(config), "in the case"); },
+              [&] { check_case(config); }, [&] { prepare::check_regions(config); });
           check_shown(config);
         });
         for (const std::string& doubt : prepare::doubtful_times(config))
@@ -158,61 +162,6 @@ std::vector<Problem> lost_names(const Source& source, const std::vector<std::str
   return lost;
 }
 
-/// Tables that a method lacks, and what it has in their place (docs/stages.md).
-struct Instead {
-  const char *method, *table, *sentence;
-};
-constexpr Instead instead[] = {
-    {"dem3d", "load",
-     "spheres have no faces: walls and supports with a servo press, `force` of a [[support]] acts "
-     "on elements, `absorb` takes waves up"},
-    {"dem3d", "in_situ", "a packing is put under stress by servos, in a first stage"},
-    {"dem3d", "bolt", "bars with bond are bodies of shape \"rebar\""},
-    {"dem3d", "joint_set", "[[body.cut]] parts links, one cut at a time"},
-    {"dem3d", "discontinuity", "[[body.cut]] parts links"},
-    {"fdem2d", "wall", "a body that a [[support]] holds as a whole is rigid"},
-    {"fdem3d", "wall", "a body that a [[support]] holds as a whole is rigid"},
-    {"fdem3d", "contact", "faces of tetrahedra lose energy by friction and `damping`"},
-};
-
-/// Whether a method has a key or table: its first word as the first one, its last word as any.
-bool has_key(const std::vector<KeyInfo>& keys, const std::string& path) {
-  const std::string first = path.substr(0, path.find('.')), last = path.substr(path.rfind('.') + 1);
-  return std::any_of(keys.begin(), keys.end(), [&](const KeyInfo& key) {
-    if (key.path.substr(0, key.path.find_first_of(".[")) != first) return false;
-    const std::string inside = key.path + ".";
-    return first == path || inside.find("." + last + ".") != std::string::npos ||
-           inside.find("." + last + "[") != std::string::npos;
-  });
-}
-
-/// Of an unknown key that other methods have: which, and what this one has in its place.
-Problem told_of_others(Problem problem, const std::string& method) {
-  static const std::string unknown = " is not a key";
-  const std::size_t end = problem.text.find(unknown);
-  const std::string path = problem.text.substr(0, end);
-  if (end == std::string::npos || path.find_first_of(" =\"") != std::string::npos) return problem;
-  std::vector<std::string> others;
-  bool elsewhere = false;  // the method has the word, in another table
-  const auto ask = [&](const char* other, const std::vector<KeyInfo>& keys) {
-    if (!has_key(keys, path)) return;
-    if (other == method)
-      elsewhere = true;
-    else
-      others.emplace_back(other);
-  };
-  ask("dem3d", list_keys<dem::Config>(""));
-  ask("fdem2d", list_keys<fdem::Config>(""));
-  ask("fdem3d", list_keys<fdem3::Config>(""));
-  if (elsewhere || others.empty()) return problem;
-  problem.correction.reset();
-  problem.text = fmt::format("{}{} of {}; {} {} it", path, unknown, method,
-                             fmt::join(others, " and "), others.size() > 1 ? "have" : "has");
-  for (const Instead& i : instead)
-    if (method == i.method && path == i.table) problem.text += fmt::format("\n    {}", i.sentence);
-  return problem;
-}
-
 template <class Config, class Source>
 Config read_all(const Source& source, const std::vector<std::string>& overrides) {
   try {
@@ -221,7 +170,7 @@ Config read_all(const Source& source, const std::vector<std::string>& overrides)
     if constexpr (!std::is_same_v<Config, coupled::Config>) {
       std::vector<Problem> told = error.problems;
       for (Problem& problem : told)
-        problem = told_of_others(std::move(problem), case_method(source, overrides));
+        problem = told_of_unknown(std::move(problem), case_method(source, overrides));
       const CaseText& text = text_of(source);
       error = CaseError(std::move(told), text.origin, text.text);
     }
@@ -451,9 +400,14 @@ RunPlan plan_of(const Case& read) {
   plan.warnings = read.notes;
   std::visit(
       [&](const auto& config) {
+        const auto warn = [&](const std::vector<std::string>& doubts) {
+          for (const std::string& doubt : doubts)
+            plan.warnings.push_back(read.file.empty() ? doubt : with_lines(doubt, read.file));
+        };
         if constexpr (requires { prepare::doubtful_probes(config, read.folder); })
-          for (std::string& doubt : prepare::doubtful_probes(config, read.folder))
-            plan.warnings.push_back(std::move(doubt));
+          warn(prepare::doubtful_probes(config, read.folder));
+        if constexpr (requires { prepare::doubtful_in_situ(config, read.folder); })
+          warn(prepare::doubtful_in_situ(config, read.folder));
       },
       read.config);
   plan.prepared = read.prepared;

@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
+#include "core/quantity.hpp"
+#include "core/stages.hpp"
+#include "io/case/units.hpp"
 #include "io/round_numbers.hpp"
+#include "prepare/checks/by_name.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -121,7 +126,45 @@ std::vector<std::string> doubts(Config config) {
   return told;
 }
 
+template <class Config>
+std::vector<std::string> ends_in_si(Config& config) {
+  std::vector<std::string> problems;
+  for (auto& stage : config.stages) {
+    const std::optional<ProbeRule> rule = ProbeRule::parsed(stage.when);
+    if (!rule || rule->unit.empty()) continue;
+    const ProbeConfig* const probe = item_named(config.probes, rule->probe);
+    if (probe == nullptr) {  // its name is told as the problem
+      stage.when = fmt::format("{} {} {:.17g}", rule->probe, rule->sign, rule->limit);
+      continue;
+    }
+    std::string unit = quantity_named(probe->quantity).unit, problem;
+    if (config.method == "fdem2d") unit = per_metre(unit);
+    const std::string number = stage.when.substr(stage.when.find(rule->sign) + rule->sign.size());
+    const std::size_t first = number.find_first_not_of(" \t");
+    const double limit = parse_quantity(number.substr(first), unit, problem);
+    if (!problem.empty())
+      problems.push_back(fmt::format("stage.{}.when = \"{}\": {}; probe {} reads {}, in {}",
+                                     stage.name, stage.when, problem, probe->name, probe->quantity,
+                                     unit));
+    stage.when = fmt::format("{} {} {:.17g}", rule->probe, rule->sign, limit);
+  }
+  return problems;
+}
+
 }  // namespace
+
+std::vector<std::string> put_ends_in_si(dem::Config& config) {
+  return ends_in_si(config);
+}
+std::vector<std::string> put_ends_in_si(fdem::Config& config) {
+  return ends_in_si(config);
+}
+std::vector<std::string> put_ends_in_si(fdem3::Config& config) {
+  return ends_in_si(config);
+}
+std::vector<std::string> put_ends_in_si(coupled::Config& config) {
+  return ends_in_si(config);
+}
 
 std::vector<std::string> doubtful_times(const dem::Config& config) {
   return doubts(config);

@@ -1,5 +1,6 @@
 #pragma once
-// Stages that cannot begin and tables that begin too late: possible, and rarely meant.
+// Stages that cannot begin and tables that begin too late: possible, and rarely meant; units of the
+// numbers by which stages end.
 
 #include <string>
 #include <vector>
@@ -17,5 +18,12 @@ std::vector<std::string> doubtful_times(const dem::Config& config);
 std::vector<std::string> doubtful_times(const fdem::Config& config);
 std::vector<std::string> doubtful_times(const fdem3::Config& config);
 std::vector<std::string> doubtful_times(const coupled::Config& config);
+
+/// Numbers of `when` that have a unit, in SI from now on. Returns those whose unit is not one of
+/// what their probe reads; a sentence each.
+std::vector<std::string> put_ends_in_si(dem::Config& config);
+std::vector<std::string> put_ends_in_si(fdem::Config& config);
+std::vector<std::string> put_ends_in_si(fdem3::Config& config);
+std::vector<std::string> put_ends_in_si(coupled::Config& config);
 
 }  // namespace breccia::prepare

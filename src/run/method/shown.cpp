@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
+#include "core/probe_curve.hpp"
 #include "exec/error.hpp"
 #include "exec/no_memory.hpp"
 #include "io/case/suggestion.hpp"
@@ -46,6 +48,10 @@ Shown shown_by(Method& specimen) {
     if (const std::string heard = part + std::string("emission.");
         shown.numbers.contains(heard + "events"))
       for (const char* const number : emission_numbers) shown.numbers.insert(heard + number);
+  for (const char* const what : {"joints", "links"})  // where a stage takes bodies out
+    for (const std::string& number : std::set(shown.numbers))
+      if (number.ends_with(std::string("fracture.broken_") + what))
+        shown.numbers.insert(number.substr(0, number.rfind("broken_")) + "removed_" + what);
   shown.frame = specimen.frame();
   return shown;
 }
@@ -87,6 +93,20 @@ std::string problem_of(const CheckConfig& c, const std::vector<ProbeConfig>& pro
     known += (known.empty() ? "" : ", ") + probe.name;
   }
   return where + " is not of a probe; there are: " + (known.empty() ? "none" : known);
+}
+
+/// The problem of a curve over a probe, or of one, that the case does not have; empty: none.
+std::string problem_of_curve(const std::string& text, const std::vector<ProbeConfig>& probes) {
+  const std::optional<ProbeCurve> curve = ProbeCurve::parsed(text);
+  const std::string where = fmt::format("output.curves = {:?}", text);
+  if (!curve)
+    return where + " is not of the form \"force over deflection\", the names of two probes";
+  std::set<std::string> names;
+  for (const ProbeConfig& probe : probes) names.insert(probe.name);
+  for (const std::string& name : {curve->y.probe, curve->x.probe})
+    if (!names.contains(name))
+      return fmt::format("{}: {} is no probe{}", where, name, suggestion(name, names));
+  return "";
 }
 
 /// Problems of keys by which pictures are drawn: each is found by drawing one.
@@ -132,6 +152,8 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
   std::vector<std::string> problems;
   for (const CheckConfig& check : config.checks)
     problems.push_back(problem_of(check, config.probes, shown, config.time.end));
+  for (const std::string& curve : config.output.curves)
+    problems.push_back(problem_of_curve(curve, config.probes));
   if (!has_field(shown.frame, config.output.color))
     problems.push_back(fmt::format(
         "output.color = {:?} is no field of the frames{}; allowed are {}, and \"\" for "

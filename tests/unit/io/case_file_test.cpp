@@ -337,6 +337,10 @@ INSTANTIATE_TEST_SUITE_P(
               "did you mean model.elements_by_group.slab?"},
         Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"status\"\n",
               "check.c.value = \"status\" is no number of summary.json"},
+        Wrong{"", "[[probe]]\nname = \"press\"\n[output]\ncurves = [\"press over pres\"]\n",
+              "output.curves = \"press over pres\": pres is no probe; did you mean press?"},
+        Wrong{"", "[output]\ncurves = [\"press\"]\n",
+              "output.curves = \"press\" is not of the form \"force over deflection\""},
         Wrong{"", "[output]\ncolor = \"damgae\"\n",
               "output.color = \"damgae\" is no field of the frames; allowed are damage, force, "
               "group, id, kind, spin[_x, _y, _z], state, velocity[_x, _y, _z], and \"\" for none"},

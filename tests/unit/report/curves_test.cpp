@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/probe_curve.hpp"
+
 namespace breccia::report {
 namespace curves_test {
 
@@ -32,6 +34,34 @@ TEST(Curves, stress_stands_over_strain_and_probes_of_a_unit_share_a_plot) {
   EXPECT_EQ(count_of(svg, "time [ms]"), 3U);
   EXPECT_EQ(count_of(svg, ">top<") + count_of(svg, ">side<"), 2U);
   EXPECT_EQ(svg.find("kinetic"), std::string::npos);
+}
+
+TEST(Curves, that_a_case_names_come_first) {
+  Record record;
+  record.history.columns = {{"time", "s", {0.0, 1e-3, 2e-3}},
+                            {"way", "m", {0.0, -1e-4, -2e-4}},
+                            {"press", "N", {0.0, -7e3, -9e3}}};
+  for (const char* probe : {"way", "press"})
+    record.numbers[std::string("probe.") + probe + ".last"] = 0.0;
+  record.scene = scene_of("[output]\ncurves = [\"-press over -way\", \"press over other\"]\n");
+  ASSERT_EQ(record.scene.curves.size(), 2U);
+  const std::string svg = curves_of(record);
+  const std::size_t x = svg.find("-way ["), y = svg.find("-press [N]");
+  ASSERT_NE(x, std::string::npos) << svg;
+  ASSERT_NE(y, std::string::npos) << svg;
+  EXPECT_LT(x, svg.find("time [ms]"));
+  EXPECT_EQ(count_of(svg, "time [ms]"), 2U);
+}
+
+TEST(Curves, are_named_by_two_probes) {
+  const auto curve = ProbeCurve::parsed("-load cell over  mid way ");
+  ASSERT_TRUE(curve);
+  EXPECT_EQ(curve->y.probe, "load cell");
+  EXPECT_EQ(curve->y.sign, -1.0);
+  EXPECT_EQ(curve->x.probe, "mid way");
+  EXPECT_EQ(curve->x.sign, 1.0);
+  for (const char* text : {"load", "load over", " over way", "a over b over c"})
+    EXPECT_FALSE(ProbeCurve::parsed(text)) << text;
 }
 
 TEST(Curves, a_run_without_probes_has_none) {

@@ -119,6 +119,37 @@ TEST(Film, TheStrongestContactsComeFirstWithBothEnds) {
   EXPECT_NEAR(std::pow(force[1] / 63.0, 2.0), 0.25, 0.01);
 }
 
+TEST(Film, BoltsComeWithBothEndsAndTheirForce) {
+  const ScratchFolder folder;
+  Frame frame = test::chain_frame(0, 8, 2);
+  const Vec3 low = frame.position.front(), high = frame.position.back();
+  frame.bolted = true;
+  frame.bars = {{low, high, 40.0F, 0.0F, 0.0F, 0}, {high, low, -10.0F, 0.0F, 0.0F, 1}};
+  ParaviewSeries series(folder.path(), FrameFormat::vtu);
+  FrameContents files = contents_of(frame, 1, FrameFormat::vtu);
+  add_touching(files, frame, {}, FrameFormat::vtu, 1);
+  series.write(files);
+  series.finish();
+  const Survey survey = survey_of(folder.path(), 1);
+  EXPECT_EQ(survey.bolts, 2U);
+  const Film film = film_of(folder.path(), survey, 0, 10'000'000);
+  const Json json = parsed_json(film.json);
+  EXPECT_EQ(json["bolt_force"], 40.0);
+  ASSERT_EQ(json["frames"][0]["bolts"], 2);
+  const std::string bytes = test::inflated(test::from_base64(film.blobs.at(0)));
+  test::PlaneReader reader(bytes.substr(bytes.size() - 3 * 4 * 2 - 2));
+  const auto x = reader.numbers(4, 2);
+  const double step = json["step"], from = json["low"][0];
+  EXPECT_NEAR(from + step * x[0], low.x, step);
+  EXPECT_NEAR(from + step * x[1], high.x, step);
+  EXPECT_NEAR(from + step * x[2], high.x, step);
+  reader.numbers(4, 2);
+  reader.numbers(4, 2);
+  const auto force = reader.numbers(2, 1);
+  EXPECT_EQ(force[0], 254U);
+  EXPECT_NEAR(force[1] / 127.0 - 1.0, -0.25, 0.01);
+}
+
 TEST(Film, CornersThatPartComeBackFromTheirLeader) {
   const ScratchFolder folder;
   ParaviewSeries series(folder.path());

@@ -74,5 +74,19 @@ TEST(ReportTable, WrongMeasurementsAreNamedByFileAndLine) {
   EXPECT_THROW(read_measured(folder / "none.csv"), IoError);
 }
 
+TEST(ReportTable, UnknownUnitsAreRefusedWithTheirColumn) {
+  const ScratchFolder folder;
+  test::write_text(folder / "a.csv", "deflection [mm],force [kNn]\n1,10\n");
+  EXPECT_NE(message_of(folder / "a.csv")
+                .find("a.csv: \"kNn\", the unit of column force, is no "
+                      "unit; did you mean kN"),
+            std::string::npos)
+      << message_of(folder / "a.csv");
+  test::write_text(folder / "b.csv", "deflection,force\nmm,bananas\n1,10\n");
+  EXPECT_NE(message_of(folder / "b.csv").find("bananas"), std::string::npos);
+  test::write_text(folder / "c.csv", "strain [%],share [-]\n1,10\n");
+  EXPECT_EQ(message_of(folder / "c.csv"), "");
+}
+
 }  // namespace table_test
 }  // namespace breccia::report

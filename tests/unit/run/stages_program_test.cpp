@@ -75,6 +75,20 @@ class StagedProgram : public ::testing::Test {
   ScratchFolder folder_;
 };
 
+TEST_F(StagedProgram, EndsAStageByANumberWithAUnit) {
+  ASSERT_EQ(run("run " + path("case.toml") + " -o " + path("si")), 0) << output();
+  for (const char* rule : {"place < 29.5 mm", "place <= 2.95 cm"}) {
+    replace_file(path("case.toml"), with_end("when = \"" + std::string(rule) + "\"\n"));
+    ASSERT_EQ(run("run " + path("case.toml") + " --force -o " + path("out")), 0) << output();
+    EXPECT_EQ(summary("out")["state_hash"], summary("si")["state_hash"]) << rule;
+  }
+  replace_file(path("case.toml"), with_end("when = \"place < 29.5 kN\"\n"));
+  ASSERT_EQ(run("check " + path("case.toml")), 2);
+  EXPECT_NE(output().find("stage.lower.when"), std::string::npos) << output();
+  EXPECT_NE(output().find("probe place reads position_z, in m"), std::string::npos) << output();
+  EXPECT_NE(output().find("line "), std::string::npos) << output();
+}
+
 TEST_F(StagedProgram, TellsItsStagesAndEndsWithTheLast) {
   ASSERT_EQ(run("run " + path("case.toml") + " -o " + path("out")), 0) << output();
   const nlohmann::json s = summary("out");

@@ -98,7 +98,8 @@ export class Film {
         info.ends || !field.constant ? this.field(planes, field, info.lines) : first.lines.fields[field.name];
     }
     const contacts = meta.contact_force ? this.contacts(planes, info.contacts) : null;
-    return {time: info.time, step: info.step, number: info.number, position, fields, lines, contacts, size: 8 * bytes.length + position.byteLength};
+    const bolts = meta.bolt_force != null ? this.bolts(planes, info.bolts) : null;
+    return {time: info.time, step: info.step, number: info.number, position, fields, lines, contacts, bolts, size: 8 * bytes.length + position.byteLength};
   }
 
   positions(planes) {
@@ -149,15 +150,25 @@ export class Film {
     return values;
   }
 
-  /** Both ends of each contact, four numbers each: x, y, z, and the force over the largest. */
+  /** Both ends of each contact, with the force over the largest. */
   contacts(planes, count) {
+    return this.segments(planes, count, (step) => (step / 63) ** 2);
+  }
+
+  /** Both ends of each piece of a bolt, with the force over the largest, pulled above 0. */
+  bolts(planes, count) {
+    return this.segments(planes, count, (step) => step / 127 - 1);
+  }
+
+  /** Of each eight numbers: x, y, z of an end and its share, twice. */
+  segments(planes, count, share) {
     const {meta, axes} = this, ends = new Float32Array(8 * count);
     for (let axis = 0; axis < axes; ++axis) {
       const steps = planes.numbers(2 * count, meta.width);
       for (let e = 0; e < 2 * count; ++e) ends[4 * e + axis] = meta.low[axis] + steps[e] * meta.step;
     }
     const force = planes.numbers(count, 1);
-    for (let i = 0; i < count; ++i) ends[8 * i + 3] = ends[8 * i + 7] = (force[i] / 63) ** 2;
+    for (let i = 0; i < count; ++i) ends[8 * i + 3] = ends[8 * i + 7] = share(force[i]);
     return ends;
   }
 

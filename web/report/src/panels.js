@@ -75,7 +75,11 @@ export function curvePanel(runs, measured, store) {
     if (found) chosen.ys.add(found.name);
   }
   const strain = probes.find((c) => c.unit === "-" && /strain/i.test(c.name)), stress = probes.filter((c) => c.unit === "Pa");
-  if (!measured && strain && stress.length > 0) {
+  const named = runs[0].curve, has = (name) => probes.some((c) => c.name === name);
+  if (!measured && named && has(named.x) && has(named.y)) {
+    chosen.x = named.x;
+    chosen.ys.add(named.y);
+  } else if (!measured && strain && stress.length > 0) {
     chosen.x = strain.name;
     stress.slice(0, 4).forEach((c) => chosen.ys.add(c.name));
   }

@@ -304,6 +304,21 @@ void main() {
 }`,
 };
 
+// Bolts as ribbons of some pixels that face the camera, as wide as their forces; the colours are those of the program's own
+// pictures (overlay.cpp): pulled, and pressed.
+export const bolts = {
+  vertex: contacts.vertex.replace("uPixel, uWidth", "uPixel").replace("max(0.5 * uPixel, uWidth * vShare)", "uPixel * (1.2 + 1.8 * abs(vShare))"),
+  fragment: `precision highp float;
+uniform vec4 uClip;
+flat in float vShare;
+in vec3 vPoint;
+out vec4 color;
+void main() {
+  if (dot(uClip.xyz, vPoint) > uClip.w) discard;
+  color = vec4(vShare < 0.0 ? vec3(0.36, 0.20, 0.62) : vec3(0.86, 0.33, 0.05), 1.0);
+}`,
+};
+
 // Tetrahedra: of each pair in uValue the second number is body + 65536 * faces that can be seen.
 const SOLID = READ + BODY + `
 int corners(int face, int k) {

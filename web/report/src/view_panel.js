@@ -136,6 +136,10 @@ export class ViewPanel {
       toggles.push(this.contactsButton = toggle("contact forces", false, (on) => this.each((v) => {
         if (v.contacts) v.contacts.visible = on && v.uniforms.uScale.value === 1;
       })));
+    if (this.film.meta.bolt_force != null)
+      toggles.push(this.boltsButton = toggle("bolts", true, (on) => this.each((v) => {
+        if (v.bolts) v.bolts.visible = on && v.uniforms.uScale.value === 1;
+      })));
     if (!this.plane) {
       if (this.runs.some((r) => r.walls?.length)) toggles.push(toggle("walls", true, (on) => this.each((v) => (v.surroundings.visible = on))));
     }
@@ -203,6 +207,7 @@ export class ViewPanel {
       this.each((v) => {
         v.uniforms.uScale.value = factor;
         if (v.contacts) v.contacts.visible = factor === 1 && this.contactsButton?.getAttribute("aria-pressed") === "true";
+        if (v.bolts) v.bolts.visible = factor === 1 && this.boltsButton?.getAttribute("aria-pressed") === "true";
         v.fillContacts();
         if (this.plane || this.bodies) v.cracks.visible = factor === 1 && this.cracksButton.getAttribute("aria-pressed") === "true";
         v.redraw();

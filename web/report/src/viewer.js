@@ -101,6 +101,7 @@ export class Viewer {
     else if (this.bodies) this.buildBodies();
     else this.buildSpace();
     if (film.meta.contact_force) this.buildContacts();
+    if (film.meta.bolt_force != null) this.buildBolts();
     this.buildSurroundings();
     this.look(this.plane ? "z" : /^(iso|x|y|z)$/.test(this.run.view) ? this.run.view : "iso");
     this.resize();
@@ -175,6 +176,21 @@ export class Viewer {
     for (let i = 0; i < count; ++i) upwards.set(ends.subarray(8 * i, 8 * i + 8), 8 * (count - 1 - i));
     uEnds.value = floatTexture(upwards, 4, 2 * count);
     this.contacts.geometry.setDrawRange(0, OF_SQUARE * count);
+  }
+
+  /** Bolts, over the rock that they are in. */
+  buildBolts() {
+    this.bolts = this.add(vertices(0), this.material(shaders.bolts, {uEnds: null},
+      {side: THREE.DoubleSide, transparent: true, depthTest: false, depthWrite: false}), 8);
+  }
+
+  fillBolts() {
+    if (!this.bolts || !this.tied) return;
+    const {uEnds} = this.bolts.material.uniforms;
+    uEnds.value?.dispose();
+    const count = this.tied.length / 8;
+    uEnds.value = floatTexture(this.tied, 4, Math.max(2 * count, 1));
+    this.bolts.geometry.setDrawRange(0, OF_SQUARE * count);
   }
 
   /** Walls, and regions that are held or loaded. */
@@ -280,6 +296,7 @@ export class Viewer {
     uniforms.uValue.value = floatTexture(pairs, 2, film.meta.elements);
     this.lines = frame.lines;
     this.pressing = frame.contacts;
+    this.tied = frame.bolts;
     this.fillLines();
     for (const {patch, at, velocity} of this.walls) patch.position.copy(at).addScaledVector(velocity, frame.time);
     for (const texture of old) texture?.dispose();
@@ -290,6 +307,7 @@ export class Viewer {
   fillLines() {
     if (!this.lines) return;
     this.fillContacts();
+    this.fillBolts();
     if (this.plane || this.bodies) return this.fillJoints();
     const {kind = [], state = [], force = []} = this.lines.fields;
     const largest = this.film.meta.fields.find((f) => f.lines && f.name === "force")?.high || 1;
