@@ -253,7 +253,8 @@ struct CheckCommand {
     if (f.setup_s >= 1.0) fmt::print(", {} of it set-up", rough_duration(f.setup_s));
     if (f.output_s >= 1.0) fmt::print(", {} of it output", rough_duration(f.output_s));
     if (f.gpu_s > 0.0)
-      fmt::print("\n          steps alone: {} on one {} GPU", about_duration(f.gpu_s), f.gpu);
+      fmt::print("\n          steps alone: {} on one H200 GPU", about_duration(f.gpu_s));
+    if (f.joined) fmt::print("\n          several times that where it is crushed");
     fmt::print("\n");
     fmt::print("  memory  about {}; disk about {}, most of it {}\n", memory_text(f.memory),
                memory_text(f.disk), f.longest_part);

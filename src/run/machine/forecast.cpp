@@ -353,6 +353,7 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
   f.gpu_s = f.steps * std::max(16e-6, 4.7e-6 + 0.22e-9 * f.items);
+  f.joined = can_crack(config.materials);
   constexpr double of_triangle = 1700.0;  // as in memory_plan, which counts no outlines  [bytes]
   f.may_end_early = may_end_early(config.stages);
   const double pixels = pixels_of(config.output, aspect_of(config.bodies, folder));

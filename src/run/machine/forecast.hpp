@@ -23,8 +23,8 @@ struct Forecast {
   double output_s = 0.0;       ///< rows, frames and pictures, besides  [s]
   double setup_s = 0.0;        ///< packing, meshing, tests for fracture energies, besides  [s]
   bool may_end_early = false;  ///< its stages end at rest or when a probe says so
-  double gpu_s = 0.0;          ///< of the steps on that GPU; 0: not measured  [s]
-  const char* gpu = "H200";    ///< that bench/notes/gpu.md or the theory page measured
+  bool joined = false;         ///< of triangles or tetrahedra with joints, whose pieces would touch
+  double gpu_s = 0.0;          ///< of the steps on an H200; 0: not measured  [s]
   double memory = 0.0;         ///< the program's own included  [bytes]
   double disk = 0.0;           ///< of the result folder at the end  [bytes]
   std::string longest_part;    ///< of the disk: "pictures", "fields", "history.csv"

@@ -113,7 +113,7 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
   f.gpu_s = f.steps * (0.4e-3 + 0.67e-9 * f.items);  // bench/notes/gpu.md, four sizes
-  f.gpu = "H200";
+  f.joined = can_crack(config.materials);
   f.may_end_early = may_end_early(config.stages);
   const double pixels = pixels_of(config.output);
   f.memory = own_memory + memory_plan(config).run_bytes;

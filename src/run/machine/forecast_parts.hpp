@@ -93,6 +93,12 @@ inline double pixels_of(const OutputConfig& output, double aspect = 0.0) {
   return width * width *
          (aspect > 0.0 ? std::clamp(beside + 0.78 * aspect, lowest, highest) : highest);
 }
+/// Whether triangles or tetrahedra of any of them are joined, from the start or once they wake.
+template <class Materials>
+bool can_crack(const Materials& materials) {
+  return std::any_of(materials.begin(), materials.end(),
+                     [](const auto& m) { return m.joints != "none"; });
+}
 inline bool draws(const OutputConfig& output) {
   return output.frames > 0 && output.pictures;
 }

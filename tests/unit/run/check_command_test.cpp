@@ -228,7 +228,7 @@ TEST(CheckCommand, says_size_step_time_memory_and_disk_within_80_columns) {
   const Told told = told_by(folder, "check " + folder.path() + "/beam.toml");
   EXPECT_EQ(told.exit_code, 0) << told.text;
   for (const char* word :
-       {"triangles", "joints", "step ", "steps ", "core", "GPU", "memory", "disk"})
+       {"triangles", "joints", "step ", "steps ", "core", "GPU", "crushed", "memory", "disk"})
     EXPECT_TRUE(has(told.text, word)) << word << " in\n" << told.text;
   for (std::size_t at = told.text.find('\n') + 1; at < told.text.size();) {
     const std::size_t end = told.text.find('\n', at);
