@@ -16,6 +16,7 @@
 #include "io/case/key_pages.hpp"
 #include "io/case/problems.hpp"
 #include "io/emphasis.hpp"
+#include "io/fold.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
@@ -84,10 +85,9 @@ struct CheckCommand {
         check(fix ? fixed(path) : path);
       } catch (const Error& error) {
         std::fflush(stdout);
-        std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::error, "error:", stderr),
-                               harmless(error.what()))
-                       .c_str(),
-                   stderr);
+        const std::string text = fmt::format(
+            "{} {}\n", emphasized(Emphasis::error, "error:", stderr), harmless(error.what()));
+        std::fputs(fitting(text, 4, stderr).c_str(), stderr);
         if (exit_code == 0) exit_code = error.exit_code();
       }
     }
@@ -313,22 +313,34 @@ struct CheckCommand {
     for (const Fact& fact : method->facts()) {
       if (fact.path.starts_with("model.added_mass."))
         fmt::print("  {} {:.4g}\n", fact.path.substr(6), fact.value);
-      if (fact.path.starts_with("model.rock.")) {
-        const char* const unit = fact.path.ends_with(".young")   ? " Pa"
-                                 : fact.path.ends_with("_speed") ? " m/s"
-                                                                 : "";
-        fmt::print("  {} {:.6g}{}\n", harmless(fact.path.substr(6)), fact.value, unit);
-      }
+      if (fact.path.starts_with("model.rock.")) tell_of_rock(fact);
     }
     tell_warnings(*method, read);
   }
+  /// One number of a material as its joints soften it, model.rock.<material>.<word>.
+  static void tell_of_rock(const Fact& fact) {
+    const std::size_t cut = fact.path.rfind('.');
+    const std::string whose = fact.path.substr(std::string("model.rock.").size(),
+                                               cut - std::string("model.rock.").size()),
+                      word = fact.path.substr(cut + 1);
+    if (word == "young")
+      fmt::print("  {} with its joints: E {:.4g} GPa\n", harmless(whose), 1e-9 * fact.value);
+    else if (word == "poisson")
+      fmt::print("  {} with its joints: nu {:.4g}\n", harmless(whose), fact.value);
+    else if (word.ends_with("wave_speed"))
+      fmt::print("  {} with its joints: {} waves at {:.5g} m/s\n", harmless(whose),
+                 word == "wave_speed" ? "pressure" : "shear", fact.value);
+    else
+      fmt::print("  {} with its joints: {} {:.6g}\n", harmless(whose), word, fact.value);
+  }
   static void tell_warnings(Method& method, const Case& read) {
     std::fflush(stdout);
-    for (const std::string& warning : method.warnings())
-      std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
-                             harmless(read.file.empty() ? warning : with_lines(warning, read.file)))
-                     .c_str(),
-                 stderr);
+    for (const std::string& warning : method.warnings()) {
+      const std::string text =
+          fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
+                      harmless(read.file.empty() ? warning : with_lines(warning, read.file)));
+      std::fputs(fitting(text, 2, stderr).c_str(), stderr);
+    }
   }
 };
 

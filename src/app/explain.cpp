@@ -255,9 +255,15 @@ struct ExplainCommand {
     for (const auto& [method, keys] : methods) largest = std::max(largest, keys.size());
     if (total == 0 && !is_table)
       throw InputError(key + " is not a key; breccia keys " + key + " searches for words");
-    if (largest > most)
+    if (largest > most) {
+      const auto longest = std::find_if(methods.begin(), methods.end(), [&](const OfMethod& of) {
+        return of.second.size() == largest;
+      });
       throw InputError(
-          fmt::format("{} may be {} keys; name one, as in material.{}", key, total, key));
+          fmt::format("{0} may be {1} keys, {2} and {3} among them; breccia keys {0} "
+                      "lists them, and explain takes one",
+                      key, total, longest->second[0].path, longest->second[1].path));
+    }
     for (const auto& [method, keys] : tables) tell_table(method, keys);
     const Law* drawn = nullptr;
     for (const auto& [method, keys] : methods)

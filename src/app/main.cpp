@@ -34,10 +34,10 @@ constexpr int file_error = 3;
 constexpr int memory_error = 5;
 
 void write_error(const std::string& message) {
-  std::fputs(fmt::format("{} {}\n", breccia::emphasized(breccia::Emphasis::error, "error:", stderr),
-                         breccia::harmless(message))
-                 .c_str(),
-             stderr);
+  const std::string text =
+      fmt::format("{} {}\n", breccia::emphasized(breccia::Emphasis::error, "error:", stderr),
+                  breccia::harmless(message));
+  std::fputs(breccia::fitting(text, 4, stderr).c_str(), stderr);
 }
 
 /// Help of the program and its commands, for terminals of 80 columns.

@@ -141,9 +141,10 @@ struct ProbeConfig {
     key("min", min, "m", any_number,
         "lower corner of a box that stands still: what is inside at the time is read (of "
         "displacement and strain, what was inside at the start); stress of spheres needs it; left "
-        "out: open below, or no box without max");
+        "out: open below, or no box without max; inf: open on that side");
     key("max", max, "m", any_number,
-        "upper corner of that box; left out: open above, or no box without min");
+        "upper corner of that box; left out: open above, or no box without min; inf: open on that "
+        "side");
     key("about", about, "m", any_number,
         "the point that torque and angular momentum are about; left out: the origin");
     key("lag", lag, "s", not_negative,

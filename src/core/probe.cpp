@@ -1,6 +1,7 @@
 #include "core/probe.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "core/case_config.hpp"
@@ -65,6 +66,11 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of, std::si
   const bool stress_of_spheres = of == in_space && kind == Kind::stress;
   if (stress_of_spheres && (p.min.empty() || p.max.empty()))
     add(": the stress of spheres is that of a box; give min and max");
+  const auto endless = [](const std::vector<double>& corner) {
+    return std::any_of(corner.begin(), corner.end(), [](double x) { return std::isinf(x); });
+  };
+  if (stress_of_spheres && (endless(p.min) || endless(p.max)))
+    add(": the stress of spheres is a mean over a box; give it ends on all sides");
   if (stress_of_spheres && !p.on.empty())
     add(".on: the stress of spheres is of all that is in the box; leave on out");
   if ((stress_of_spheres || kind == Kind::strain) && p.reduce != "mean")

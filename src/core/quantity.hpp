@@ -119,7 +119,7 @@ inline constexpr NamedQuantity quantities[] = {
     {"broken", "-", {Quantity::Kind::broken}, in_3d | in_plane},
     {"opening", "m", {Quantity::Kind::opening}, in_3d | in_plane | in_frames},
     {"slip", "m", {Quantity::Kind::slip}, in_mesh | in_frames},
-    {"axial_force", "N", {Quantity::Kind::axial_force}, of_bolt},
+    {"axial_force", "N", {Quantity::Kind::axial_force}, of_bolt | in_space},
     {"shear_force", "N", {Quantity::Kind::shear_force}, of_bolt},
     {"spin_x", "rad/s", {Quantity::Kind::spin, 0}, in_frames},
     {"spin_y", "rad/s", {Quantity::Kind::spin, 1}, in_frames},

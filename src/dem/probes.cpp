@@ -231,6 +231,18 @@ struct WhetherBroken {
     return Readings(is_broken(i) ? 1.0 : 0.0, at);
   }
 };
+/// With which pieces of bar are pulled.  [N]
+struct PullOfBar {
+  View<const ElementState> state;
+  View<const Index> a, b;
+  View<const PairForce> actions;
+  Index first;  ///< action of piece 0
+
+  BR_HD Readings operator()(Index i, GlobalId at) const {
+    const Vec3 way = state[b[i]].position - state[a[i]].position;
+    return Readings(-dot(actions[first + i].force_on_b(), way) / norm(way), at);
+  }
+};
 /// How far concrete links that soften or are broken are open beyond what the force that they still
 /// bear asks for.
 template <class Number>
@@ -293,6 +305,12 @@ Readings read_links(const World& w, const ProbeConfig& p, View<const Index> memb
         add(set, g.begin, g.end, OpeningOfFacet{g.law, set.place.view(), set.state.view()});
     }
   };
+  if (kind == Quantity::Kind::axial_force) {
+    constexpr Index first = 0;  // actions of other links come behind those of bars
+    add(w.steel, 0, w.steel.size(),
+        PullOfBar{state, w.steel.a.view(), w.steel.b.view(), w.bar_actions.view(), first});
+    return all;
+  }
   w.each_set([&](const auto& set) {
     with_number(w.exec.precision, [&](auto number) {
       if (kind == Quantity::Kind::opening) return add_openings(set, number);
@@ -313,7 +331,8 @@ Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
   const Elements& e = w.elements;
   const Quantity quantity = quantity_named(p.quantity).quantity;
   if (quantity.kind == Quantity::Kind::stress) return read_stress(w, p);
-  if (quantity.kind == Quantity::Kind::broken || quantity.kind == Quantity::Kind::opening)
+  if (quantity.kind == Quantity::Kind::broken || quantity.kind == Quantity::Kind::opening ||
+      quantity.kind == Quantity::Kind::axial_force)
     return read_links(w, p, members, quantity.kind);
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);

@@ -166,7 +166,7 @@ int Run::advance() {
   while (!finished()) {
     const double spent = take_steps();
     if (recorder_.due(method_.time(), method_.steps())) observe();
-    for (const std::string& text : stages_.look())
+    for (const std::string& text : stages_.look(recorder_.drawer(method_, background_)))
       on_first(plan_.ranks, [&] { log_->write(Level::info, "stage", method_.steps(), text); });
     const Decision decision = decide(spent);
     steps_at_once_ = decision.steps_at_once;

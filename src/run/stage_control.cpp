@@ -99,7 +99,7 @@ StageCause StageControl::cause_to_end(StageProgress& progress) {
   return cause;
 }
 
-std::vector<std::string> StageControl::look() {
+std::vector<std::string> StageControl::look(const std::function<void(const std::string&)>& at_end) {
   if (stages_.empty()) return {};
   StageProgress progress = method_.stage();
   if (progress.over()) return {};
@@ -112,6 +112,7 @@ std::vector<std::string> StageControl::look() {
   if (over) progress.end[at(progress.index)] = method_.time();
   method_.set_stage(progress);
   if (!over) return {};
+  if (at_end) at_end(present().name);
   std::vector<std::string> told{fmt::format("stage {} ends by {} at {:.9g} s", present().name,
                                             word_of(progress.cause[at(progress.index)]),
                                             method_.time())};

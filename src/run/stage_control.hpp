@@ -1,6 +1,7 @@
 #pragma once
 // When the stages of a case end, and the next ones begin.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,9 @@ class StageControl {
   /// `stop`, or the next look before it.
   StopAt limited(StopAt stop) const;
   /// Ends the present stage and begins the next, if it is time. Returns what happened, in words.
-  std::vector<std::string> look();
+  /// @param at_end  is told the name of a stage that has ended, before the next one changes
+  /// anything
+  std::vector<std::string> look(const std::function<void(const std::string&)>& at_end = {});
   /// Stages that have begun.
   std::vector<StageRecord> records() const;
 

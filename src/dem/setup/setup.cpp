@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "core/on_host.hpp"
 #include "core/set_up.hpp"
@@ -248,6 +249,33 @@ void set_linked_pairs(World& w) {
 
 namespace {
 
+/// Says which supports hold a body by so few elements that their links bear all of its reaction.
+void tell_narrow_supports(const Config& config, const Model& model,
+                          const std::vector<std::vector<Index>>& members,
+                          std::vector<std::string>& warnings) {
+  constexpr std::size_t few = 10, small = 200;  // elements: of a support, of a whole model
+  if (model.position.size() < small) return;
+  for (std::size_t s = 0; s < members.size(); ++s) {
+    const SupportConfig& support = config.supports[s];
+    const bool stands = std::any_of(support.fix.begin(), support.fix.end(), [](const auto& word) {
+      return word == "x" || word == "y" || word == "z" || word == "all";
+    });
+    if (!stands || members[s].empty() || members[s].size() >= few) continue;
+    const std::set<Index> held(members[s].begin(), members[s].end());
+    const auto links =
+        std::count_if(model.links.begin(), model.links.end(), [&](const Model::Link& link) {
+          return link.kind != LinkKind::steel && !link.parted &&
+                 held.contains(link.a) != held.contains(link.b);
+        });
+    if (links == 0) continue;
+    warnings.push_back(
+        fmt::format("support.{}: it holds {} element{}, which {} link{} to the rest: where {} it "
+                    "holds nothing more. Widen its region, or let the body rest on a wall",
+                    support.name, held.size(), held.size() == 1 ? "" : "s", links,
+                    links == 1 ? " joins" : "s join", links == 1 ? "that breaks" : "these break"));
+  }
+}
+
 /// Says which walls elements reach into before anything moves, and what that is worth.
 void tell_overlaps(const World& w, const Config& config, std::vector<std::string>& warnings) {
   constexpr double little = 0.01;  // of a radius
@@ -304,6 +332,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   given.emission = config.emission;
   std::vector<std::vector<Index>> members = support_members(config, model);
   given.dashpots = dashpots_of(config, model, members);
+  tell_narrow_supports(config, model, members, given.warnings);
   for (const std::vector<Index>& own : members) {
     given.masses.push_back(0.0);
     for (const Index e : own) given.masses.back() += model.mass[at(e)];

@@ -62,7 +62,10 @@ class Holding {
     for (std::size_t s = 0; s < supports_.size(); ++s) {
       const std::uint8_t bits = fixed_bits(supports_[s]);
       if (all_.members[s].empty())
-        problems_.push_back("support " + supports_[s].name + " holds no element");
+        problems_.push_back(
+            "support " + supports_[s].name +
+            " holds no element: a region takes those whose centres are in it, which lie "
+            "a radius and more inside of a body's faces");
       for (const Index e : all_.members[s]) hold(s, bits, static_cast<std::size_t>(e));
     }
     for (const auto& [clash, found] : clashes_) tell(clash, found);

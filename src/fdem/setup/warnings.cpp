@@ -103,14 +103,16 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
   std::string others;
   if (zones.size() > 1)
     others = "; " + std::to_string(zones.size()) + " laws of joints are like that";
-  char text[600];
+  char text[700];
   std::snprintf(text, sizeof text,
                 "%d joints (%s): their process zone E G_I/f_t^2 = %.3g m spans %.2g edges of %.3g "
                 "m (the longest, %.3g m, at (%.6g, %.6g) m), not 3: strength and energy depend on "
                 "the mesh, and each row of triangles may break by itself%s. A shorter mesh_size "
-                "helps, or more energy_open",
+                "of %.2g m would do, or an energy_open %.2g times as large; else take "
+                "the strength as one of this mesh",
                 worst.count, names.c_str(), worst.zone, worst.edges(), worst.sum / worst.count,
-                worst.longest, place.x, place.y, others.c_str());
+                worst.longest, place.x, place.y, others.c_str(), worst.zone / wanted,
+                wanted / worst.edges());
   found.emplace_back(text);
 }
 

@@ -153,6 +153,7 @@ std::string with_lines(const std::string& message, const std::string& path) {
   };
   name(" in the case; ", " in ");
   name(" with the model; ", " with the model of ");
+  name(" with the supports; ", " with the supports of ");
   name(" with the files of the case; ", " with the files of ");
   return told;
 }

@@ -28,7 +28,16 @@ constexpr std::pair<std::string_view, std::string_view> other_words[] = {
     {"center", "point"}, {"position", "center"},     {"position", "point"},
     {"axis", "normal"},  {"height", "length"},       {"E", "young"},
     {"nu", "poisson"},   {"rho", "density"},         {"mu", "friction"},
-    {"ft", "tension"},   {"ft", "tensile_strength"}, {"element_size", "mesh_size"}};
+    {"ft", "tension"},   {"ft", "tensile_strength"}, {"element_size", "mesh_size"},
+    {"dip", "angle"},    {"dip_angle", "angle"},     {"yield_force", "yield"}};
+
+/// Words for the strength of a specimen, which is no key of a link or a joint.
+bool is_compressive_strength(const std::string& word) {
+  static const std::set<std::string> words{
+      "compression", "compressive_strength", "compression_strength", "fc", "f_c", "fck", "ucs",
+      "UCS"};
+  return words.contains(word);
+}
 
 /// Up to four known words that hold `word`, of at least three letters: "sandstone-berea or
 /// marble-cherokee".
@@ -62,10 +71,18 @@ std::string suggestion(const std::string& word, const std::set<std::string>& kno
   if (word == "stage" && known.contains("body"))  // below spheres or tetrahedra
     return ": stages stand above both methods: [[stage]], with [stage.spheres] and "
            "[stage.tetrahedra]";
+  if (is_compressive_strength(word) && known.contains("cohesion"))
+    return known.contains("friction_angle")
+               ? ": a strength of specimens; of joints give cohesion, UCS (1 - sin a)/(2 cos a) by "
+                 "the friction_angle a"
+               : ": a strength of specimens, no number of links; 'breccia calibrate CASE "
+                 "--material "
+                 "NAME --target compression=...' finds the links' cohesion that shows it";
   for (const auto& [other, key] : other_words)
     if (word == other && known.contains(std::string(key)))
       return "; did you mean " + std::string(key) + "?";
-  if (const std::string best = nearest(word, known); !best.empty())
+  const std::string first = word.substr(0, word.find('/'));  // C35 of C35/45
+  if (const std::string best = nearest(first, known); !best.empty())
     return "; did you mean " + best + "?";
   if (const std::string some = holding(word, known); !some.empty())
     return "; did you mean " + some + "?";

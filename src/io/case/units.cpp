@@ -287,6 +287,13 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
     return 0.0;
   }
   const std::string number_and = "\"" + std::string(digits) + " ";
+  if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') {
+    problem = quoted + " has a comma; numbers have a decimal point";
+    std::string pointed(whole);
+    pointed[length] = '.';
+    meant("\"" + pointed + "\"");
+    return 0.0;
+  }
   const std::optional<Unit> unit = parse_unit(rest);
   if (!unit || unit->powers != target.powers) {
     problem = !unit ? "'" + std::string(rest) + "' is not a unit"

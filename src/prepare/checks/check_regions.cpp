@@ -307,6 +307,20 @@ std::string behind(const dem::Wall& wall, const dem::WallConfig& asked, const de
       asked.name, outline.name, length_text(depth));
 }
 
+/// That a wall led at one velocity does not get as far as a body that rests; empty if it may.
+std::string short_of(const dem::WallConfig& wall, const dem::Config& config, double gap) {
+  const bool led = wall.shape == "plane" && !wall.velocity.is_table() && !wall.servo.is_on() &&
+                   !wall.has_mass() && norm(wall.velocity.value) > 0.0;
+  const bool rests =
+      std::all_of(config.bodies.begin(), config.bodies.end(),
+                  [](const dem::BodyConfig& body) { return norm(body.velocity) == 0.0; });
+  if (!led || !rests || !config.stages.empty()) return "";
+  const double way = dot(wall.velocity.value, wall.normal) / norm(wall.normal) * config.time.end;
+  if (way >= gap) return "";
+  return way > 0.0 ? fmt::format(", and it goes {} until time.end", length_text(way))
+                   : ", and it does not come nearer";
+}
+
 }  // namespace
 
 std::vector<std::string> doubtful_walls(const dem::Config& config, const std::string& case_folder) {
@@ -341,8 +355,8 @@ std::vector<std::string> doubtful_walls(const dem::Config& config, const std::st
         dot(config.gravity.at(0.0), asked.normal) < 0.0;  // what is not there will come
     if (nearest != nullptr && least > 1e-9 && !falls)
       doubts.push_back(fmt::format(
-          "wall.{}.point: no body touches the wall at the start; {} is nearest, {} away",
-          asked.name, nearest->name, length_text(least)));
+          "wall.{}.point: no body touches the wall at the start; {} is nearest, {} away{}",
+          asked.name, nearest->name, length_text(least), short_of(asked, config, least)));
   }
   return doubts;
 }

@@ -165,6 +165,9 @@ std::vector<std::string> pack_problems(const BodyConfig& body) {
 BodyPacking pack_body(const BodyConfig& body, const std::vector<Capsule>& bars, double bars_volume,
                       const Random& random) {
   const PackingTask task = packing_task(body, bars, bars_volume, random);
+  if (const std::string problem = misfit(task, packing_radii(task)); !problem.empty())
+    throw InputError(fmt::format("body.{}.pack.{}: {}", body.name,
+                                 body.pack.sieves.empty() ? "count" : "sieves", problem));
   Packing packing = pack(task);
   if (body.pack.porosity > 0.0 && packing.overlap > overlap_tolerance)
     throw InputError(fmt::format(

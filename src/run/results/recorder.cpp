@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -213,16 +214,28 @@ void Recorder::record(Method& method, Background& background) {
   }
   if (is_picture_step(method.steps())) {
     background.finish();  // the first frame gives the extent
-    write_picture_of_step(method);
+    write_picture_beside_frames(method, fmt::format("step_{}.png", method.steps()));
   }
 }
 
-/// A picture besides those of frames; a run that is resumed draws it anew.
-void Recorder::write_picture_of_step(Method& method) {
+/// A run that is resumed draws it anew.
+void Recorder::write_picture_beside_frames(Method& method, const std::string& name) {
   FrameWish wish = wish_of_picture();
   wish.files = false;
   const FrameOutput output = method.frame_output(wish);
-  write_picture(fmt::format("step_{}.png", method.steps()), moment_of(method), output);
+  write_picture(name, moment_of(method), output);
+}
+
+std::function<void(const std::string& stage)> Recorder::drawer(Method& method,
+                                                               Background& background) {
+  return [&](const std::string& stage) {
+    if (config_.output.frames == 0 || !config_.output.pictures) return;
+    std::string name = stage;
+    for (char& c : name)
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-') c = '_';
+    background.finish();  // the first frame gives the extent
+    write_picture_beside_frames(method, fmt::format("stage_{}.png", name));
+  };
 }
 
 void Recorder::record_last(Method& method, Background& background) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -82,6 +83,8 @@ class Recorder {
   /// Writes the rows, pictures and frames that are due; frames in the background where the method
   /// can be looked at there.
   void record(Method& method, Background& background);
+  /// Draws pictures/stage_<name>.png, the state at the end of a stage, where there are pictures.
+  std::function<void(const std::string& stage)> drawer(Method& method, Background& background);
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
   void record_last(Method& method, Background& background);
   /// At the end of a case. @throws NumericsError if its energies do not add up
@@ -104,7 +107,7 @@ class Recorder {
   void write_row(Method& method);
   void write_frame(Method& method, Then then, Background& background);
   void write_frame_of(Method& method, std::int64_t number, const PictureMoment& moment);
-  void write_picture_of_step(Method& method);
+  void write_picture_beside_frames(Method& method, const std::string& name);
   RenderOptions picture_options() const;
   FrameWish wish_of_picture() const;
   /// Step, time and hash of the state, of all ranks together.

@@ -304,5 +304,35 @@ TEST(Measures, what_an_object_does_not_have_is_refused) {
   EXPECT_NE(told({"p", "", "strain_xx", "max"}, in_plane).find("one value"), std::string::npos);
 }
 
+TEST(Measures, each_piece_of_a_hanging_bar_is_pulled_by_the_weight_below_it) {
+  constexpr int pieces = 5;
+  constexpr double spacing = 0.02, radius = 0.004, gravity = 9.81;
+  constexpr double mass = 7850.0 * pi * radius * radius * spacing;
+  Scene s;
+  s.material("b", "steel", 200e9, 0.3, 7850.0).yield = 1e15;
+  s.config.time.safety = 0.5;
+  s.config.local_damping = 0.3;
+  s.config.gravity = {gravity, 0.0, 0.0};
+  for (int i = 0; i <= pieces; ++i) {
+    const double own = i == pieces ? 0.5 * mass : mass;
+    s.element({i * spacing, 0.0, 0.0}, radius, own,
+              own * (spacing * spacing / 12.0 + radius * radius / 4.0));
+    if (i > 0) s.link(i - 1, i, LinkKind::steel);
+  }
+  s.config.supports.push_back(
+      {"clamp", "", {-1e-3, -1.0, -1.0}, {1e-3, 1.0, 1.0}, {"all"}, {}, 0.0});
+  World w = s.world();
+  for (int i = 0; i < 20'000; ++i) step(w);
+  const double each = mass * gravity;
+  EXPECT_NEAR(value(w, "axial_force", "", "max") / each, 4.5, 1e-4);
+  EXPECT_NEAR(value(w, "axial_force", "", "min") / each, 0.5, 1e-4);
+  EXPECT_NEAR(value(w, "axial_force") / each, 2.5, 1e-4);
+  const double third = 2.5 * spacing;  // the middle of the third piece
+  EXPECT_NEAR(
+      value(w, "axial_force", "", "mean", {third - 1e-3, -1.0, -1.0}, {third + 1e-3, 1.0, 1.0}) /
+          each,
+      2.5, 1e-4);
+}
+
 }  // namespace dem_measures_test
 }  // namespace breccia::dem

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/case_config.hpp"
 #include "core/gauge.hpp"
 #include "core/probe.hpp"
@@ -32,6 +34,9 @@ TEST(ProbeBox, with_one_corner_is_open_on_the_other_side) {
 TEST(ProbeBox, of_the_stress_of_spheres_has_a_volume) {
   EXPECT_FALSE(probe_problems(probe("stress_zz", {0, 0, 1}, {}), in_space).empty());
   EXPECT_TRUE(probe_problems(probe("stress_zz", {0, 0, 1}, {1, 1, 2}), in_space).empty());
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(probe_problems(probe("stress_zz", {0, 0, -inf}, {1, 1, 2}), in_space).empty());
+  EXPECT_TRUE(probe_problems(probe("velocity_z", {-inf, 0, 1}, {1, inf, inf}), in_space).empty());
 }
 
 }  // namespace probe_box_test

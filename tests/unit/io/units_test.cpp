@@ -83,6 +83,11 @@ TEST(Units, a_wrong_dimension_is_named_with_the_units_that_fit) {
             "\"10 kN\" is a force, a force per length is wanted, in N/m, kN/m or MN/m");
 }
 
+TEST(Units, a_decimal_comma_is_told) {
+  EXPECT_EQ(problem_of("34,0 GPa", "Pa"),
+            "\"34,0 GPa\" has a comma; numbers have a decimal point; try \"34.0 GPa\"");
+}
+
 TEST(Units, no_unit_is_proposed_that_nobody_means) {
   for (const char* text : {"8 mm", "8 m", "8 kg", "8 ms"})  // no "8 mPa", "8 Pa", "8 kPa"
     EXPECT_EQ(problem_of(text, "Pa").find("try"), std::string::npos) << text;

@@ -69,6 +69,15 @@ TEST(CheckDem, tells_of_walls_that_nothing_touches_at_the_start) {
             "the normal point away from it?");
   EXPECT_EQ(told[2],
             "wall.ball.point: no body touches the wall at the start; slab is nearest, 10 mm away");
+  config.time.end = 0.01;
+  config.walls[1].velocity = Vec3{0.0, 0.0, -0.1};
+  EXPECT_TRUE(
+      prepare::doubtful_walls(config, "")[0].ends_with("3 mm away, and it goes 1 mm until "
+                                                       "time.end"));
+  config.walls[1].velocity = Vec3{0.0, 0.0, 0.1};
+  EXPECT_TRUE(prepare::doubtful_walls(config, "")[0].ends_with("and it does not come nearer"));
+  config.walls[1].velocity = Vec3{0.0, 0.0, -0.4};
+  EXPECT_TRUE(prepare::doubtful_walls(config, "")[0].ends_with("3 mm away"));
   config.gravity = {0.0, 0.0, 9.81};  // towards the wall above
   EXPECT_EQ(prepare::doubtful_walls(config, "").size(), 2U);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "io/whole_file.hpp"
@@ -105,6 +106,19 @@ TEST_F(StagedProgram, TellsItsStagesAndEndsWithTheLast) {
   EXPECT_NE(history.find(",free\n"), std::string::npos);
   EXPECT_EQ(report::read_table(path("out/history.csv")).column("stage"), nullptr);
   EXPECT_NE(report::read_table(path("out/history.csv")).column("place"), nullptr);
+}
+
+TEST_F(StagedProgram, DrawsTheEndOfEachStage) {
+  ASSERT_EQ(run("run " + path("case.toml") + " --set output.frames=1 -o " + path("out")), 0)
+      << output();
+  const nlohmann::json s = summary("out");
+  const std::string first = read_whole_file(path("out/pictures/stage_lower.png")),
+                    last = read_whole_file(path("out/pictures/stage_free.png"));
+  EXPECT_TRUE(first.starts_with("\x89PNG"));
+  EXPECT_NE(first, last);
+  ASSERT_EQ(run("run " + path("case.toml") + " -o " + path("bare")), 0) << output();
+  EXPECT_EQ(s["state_hash"], summary("bare")["state_hash"]);
+  EXPECT_FALSE(std::filesystem::exists(path("bare/pictures/stage_lower.png")));
 }
 
 TEST_F(StagedProgram, GoesOnFromAnyStageToTheSameEnd) {
