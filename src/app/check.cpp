@@ -21,6 +21,7 @@
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build_coupled.hpp"
+#include "prepare/checks/check_between.hpp"
 #include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/checks/check_tools.hpp"
@@ -184,6 +185,8 @@ struct CheckCommand {
       for (const std::string& doubt : prepare::doubtful_loads(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_in_situ(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_in_situ(config, read.folder)) tell(doubt);
+    if constexpr (requires { prepare::doubtful_bodies(config, read.folder); })
+      for (const std::string& doubt : prepare::doubtful_bodies(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_tools(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_tools(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::merged_lines(config, read.folder); })

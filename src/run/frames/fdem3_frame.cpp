@@ -142,8 +142,10 @@ class FrameOfTetrahedra {
     FrameField& held = add(Kind::held);
     for (std::size_t k = 0; k < own_.elements.size(); ++k) {
       const Index hold = t_.hold.data()[own_.elements[k]];
-      for (std::size_t c = 0; c < 4 && hold >= 0; ++c)
-        held.values[4 * k + c] = static_cast<float>(holds->data()[hold].fixed >> (3 * c) & 7);
+      if (hold < 0 || holds->data()[hold].loose != 0) continue;
+      for (int c = 0; c < 4; ++c)
+        held.values[4 * k + static_cast<std::size_t>(c)] =
+            static_cast<float>(holds->data()[hold].fixed_at(c));
     }
   }
   void add_displacement(FrameField& field) const {

@@ -123,8 +123,8 @@ void add_more(const World& w, const Triangles& t, const Joints& j, const OwnPart
       if (fields.displacement != nullptr)
         PointFields::put(fields.displacement, place, way(3 * i + c));
       PointFields::put(fields.force, place, t.force.data()[i].at[c]);
-      if (fields.held != nullptr && hold >= 0)
-        fields.held->values[place] = static_cast<float>(holds->data()[hold].fixed >> (2 * c) & 3);
+      if (fields.held != nullptr && hold >= 0 && holds->data()[hold].loose == 0)
+        fields.held->values[place] = static_cast<float>(holds->data()[hold].fixed_at(c));
     }
   });
   if (fields.displacement == nullptr) return;

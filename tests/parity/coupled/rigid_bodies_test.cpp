@@ -165,15 +165,24 @@ TEST(CoupledRigidBodies, are_alike_on_threads_launches_ranks_and_resumed) {
   }
 }
 
-/// It is drawn where it has gone, turned.
+/// The largest mark of a support on a corner.
+float most_held(const Frame& frame) {
+  for (const FrameField& field : frame.point_fields)
+    if (field.name == "held") return *std::max_element(field.values.begin(), field.values.end());
+  return -1.0F;
+}
+
+/// It is drawn where it has gone, and as held from the stage on that holds it.
 TEST(CoupledRigidBodies, are_in_frames) {
   const Pile r = brick_on_pile();
   const auto method = make_method(r.config, r.model, {}, nullptr);
   const Frame start = method->frame();
   ASSERT_FALSE(start.tetrahedra.empty());
+  EXPECT_EQ(most_held(start), 0.0F);
   run_to(*method, r.config, nullptr);
   const Frame end = method->frame();
   ASSERT_EQ(end.tetrahedra.size(), start.tetrahedra.size());
+  EXPECT_EQ(most_held(end), 7.0F);
   double sum = 0.0;
   for (std::size_t k = 0; k < end.tetrahedra.size(); ++k)
     sum += end.position[static_cast<std::size_t>(end.tetrahedra[k])].z -

@@ -158,5 +158,48 @@ mesh_size = "20 mm"
   EXPECT_TRUE(has(told.text, "tetrahedra.in_situ.zz: nothing bears")) << told.text;
 }
 
+/// A ball in the middle of a block, on it, and tied to it.
+TEST_F(Doubts, tell_of_spheres_that_begin_inside_of_tetrahedra) {
+  const auto at = [&](const std::string& z, const std::string& more = "") {
+    return told_by("check", R"(breccia = 1
+method = ["dem3d", "fdem3d"]
+[time]
+end = "1 ms"
+[output]
+frames = 0
+[spheres.material.grain]
+law = "grain"
+[[spheres.body]]
+name = "ball"
+shape = "element"
+material = "grain"
+center = [0.0, 0.0, ")" + z +
+                                R"("]
+radius = "5 mm"
+[tetrahedra.material.rock]
+young = "30 GPa"
+joints = "none"
+[[tetrahedra.body]]
+name = "block"
+shape = "box"
+material = "rock"
+size = [0.1, 0.1, 0.02]
+structured = true
+mesh_size = "20 mm"
+)" + more);
+  };
+  const Told inside = at("2 mm");
+  EXPECT_EQ(inside.exit_code, 0) << inside.text;
+  EXPECT_TRUE(has(inside.text, "spheres.body.ball: it reaches 13 mm into the tetrahedra of block"))
+      << inside.text;
+  EXPECT_TRUE(has(inside.text, "line ")) << inside.text;
+  EXPECT_FALSE(has(at("15 mm").text, "into the tetrahedra"));
+  EXPECT_FALSE(has(at("14 mm",
+                      "[[bond]]\nname = \"b\"\nspheres = \"ball\"\ntetrahedra = "
+                      "\"block\"\n")
+                       .text,
+                   "into the tetrahedra"));
+}
+
 }  // namespace check_doubts_test
 }  // namespace breccia
