@@ -145,8 +145,10 @@ MemoryPlan memory_plan(const fdem3::Config& config) {
   }
   const bool frames = config.output.fields || (config.output.frames > 0 && config.output.pictures);
   plan.run_bytes = (frames ? framed : whole) * plan.items;
-  plan.host_bytes =
-      (frames ? host_framed : config.checkpoint.keep > 0 ? host_saved : host) * plan.items;
+  plan.host_bytes = (frames                       ? host_framed
+                     : config.checkpoint.keep > 0 ? host_saved
+                                                  : host) *
+                    plan.items;
   return plan;
 }
 
