@@ -112,7 +112,8 @@ using EdgePush = EdgePushOf<double>;
 /// where T acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge
 /// inside), but no more than they were given. The rest is spent. k goes with the edge: where it
 /// shrinks under a T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend
-/// what nobody put in. A spring that is forgotten has spent what it held.  [J/m]
+/// what nobody put in. A spring that is forgotten has spent what it held; what one gives back
+/// beyond what it was given counts against what friction spends.  [J/m]
 struct FrictionWork {
   double taken = 0.0, sprung = 0.0;
   BR_HD void add(double more_taken, double more_sprung) {
@@ -189,11 +190,11 @@ struct EdgesInTurn {
   }
 };
 
-/// Shear force and work that a broken joint hands to the contact of its faces.
+/// Forces and work that a broken joint hands to the contact of its faces.
 struct JointLegacy {
   View<const Index> edge_a, edge_b;
-  View<const double> pressing, shear_at_break;  ///<  [N/m]
-  View<JointWork> inherited_work;               ///<  [J/m]
+  View<const JointHandover> handover;
+  View<JointWork> inherited_work;  ///<  [J/m]
 };
 
 /// Normal force by potential, both ways; Coulomb friction on each edge with a spring that remembers
@@ -369,14 +370,15 @@ struct CoupleForces {
   }
 
   /// Gives a couple in overlap the forces that its faces carry, as far as friction bears them.
-  /// @param pressing, shear  between the faces, and on a along its edge  [N/m]
-  /// @param edges              that lie on each other, of a and of b
+  /// Springs of friction are softer than joints and would hold more at that force; the couple
+  /// stores what was held there, no more.
+  /// @param edges  that lie on each other, of a and of b
   /// @returns what it stores then
-  BR_HD static JointWork begin_pressed(double pressing, double shear, const int (&edges)[2],
+  BR_HD static JointWork begin_pressed(const JointHandover& broken, const int (&edges)[2],
                                        const ContactPair& law, CoupleState& kept,
                                        const Vec2 (&xa)[3], const Target& of_a, const Vec2 (&xb)[3],
                                        const Target& of_b) {
-    kept.scale = first_scale(pressing, law, xa, of_a, xb, of_b);
+    kept.scale = first_scale(broken.pressing, law, xa, of_a, xb, of_b);
     const double penalty = kept.scale * law.penalty;
     const Polygon over = overlap_of(of_a, of_b);
     JointWork given{penalty * (potential_integral(of_a, over) + potential_integral(of_b, over)),
@@ -394,7 +396,7 @@ struct CoupleForces {
     // Along either edge, in its own direction, it is the same: both turn.
     const double most = limit[0] + limit[1];
     if (most > 0.0) {
-      const double share = max(-1.0, min(1.0, shear / most));
+      const double share = max(-1.0, min(1.0, broken.shear / most));
       for (int side = 0; side < 2; ++side) {
         if (!(stiffness[side] > 0.0)) continue;
         const double drag = share * limit[side];
@@ -402,6 +404,7 @@ struct CoupleForces {
         given.slide += 0.5 * drag * drag / stiffness[side];
       }
     }
+    given = given.within(broken.held);
     kept.work = given.open + given.slide;
     kept.sprung = given.slide;
     return given;
@@ -410,14 +413,13 @@ struct CoupleForces {
  private:
   /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
   /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
-  /// part of the joint's work.
+  /// part of the joint's work, no more than the joint held.
   BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec2 (&xa)[3],
                      const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) const {
-    if (!(joints.pressing[joint] > 0.0)) return;
+    const JointHandover& broken = joints.handover[joint];
+    if (!(broken.pressing > 0.0)) return;
     const int of_joint[2] = {joints.edge_a[joint] % 3, joints.edge_b[joint] % 3};
-    joints.inherited_work[joint] =
-        begin_pressed(joints.pressing[joint], joints.shear_at_break[joint], of_joint, law, kept, xa,
-                      of_a, xb, of_b);
+    joints.inherited_work[joint] = begin_pressed(broken, of_joint, law, kept, xa, of_a, xb, of_b);
   }
 
   /// Of the penalty, so that the couple presses as hard as this.  [N/m]

@@ -35,7 +35,8 @@ struct JointForces {
   View<JointPoints> points;
   View<JointForceOf<Number>> force;
   View<JointWork> work;
-  View<double> broke_at, pressing, shear_at_break;
+  View<double> broke_at;
+  View<JointHandover> handover;
   View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
 
   template <class R>
@@ -177,8 +178,11 @@ struct JointForces {
     }
     force[i] = now;
     if (failed >= 2) {
-      pressing[i] = max(0.0, pressure);
-      shear_at_break[i] = drag;
+      JointHandover over{max(0.0, pressure), drag, {}};
+      for (int q = 0; q < 3; ++q)
+        over.held.add(weight_of(q) * h, stored_pressed(bond, strength[i], h, o.open[q] + offset.x,
+                                                       o.slide[q] + offset.y, state.point[q]));
+      handover[i] = over;
       finish(i);
     }
   }

@@ -50,6 +50,22 @@ using JointForcesOf = Buffer<JointForceOf<Number>>;
 /// [J/m]
 struct JointWork {
   double open = 0.0, slide = 0.0;
+
+  BR_HD void add(double weight, const StoredEnergy& e) {
+    open += weight * e.open;
+    slide += weight * e.slide;
+  }
+  /// As much of it as there is of another.
+  BR_HD JointWork within(const JointWork& most) const {
+    return {min(open, most.open), min(slide, most.slide)};
+  }
+};
+
+/// What a joint that breaks hands to the contact of its faces.
+struct JointHandover {
+  double pressing = 0.0;  ///< compressive force  [N/m]
+  double shear = 0.0;     ///< on side a along its edge  [N/m]
+  JointWork held;         ///< by its pressed points  [J/m]
 };
 
 /// Cohesive joints. Edge 3 t + k leads from corner k of triangle t to the next one. Side a is the
@@ -60,19 +76,18 @@ struct Joints {
   /// Others read the fields that each_field visits, no more: host_copy() makes no other array.
   static constexpr bool is_arrays_alone = true;
 
-  Buffer<Index> edge_a, edge_b;   ///< the two edges that it joins  [-]  (set-up, ranks)
-  Buffer<Index> law;              ///< index into Case::bonds  [-]  (constant)
-  Buffer<double> length;          ///< at the start  [m]  (constant)
-  Buffer<double> strength;        ///< over its law's  [-]  (constant)
-  Buffer<Vec2> preset;            ///< opening and slip at which it was joined; empty: none  [m]
-                                  ///< (set-up, insertion)
-  Buffer<JointStage> stage;       ///<  [-]  (insertion, pairs, stage)
-  Buffer<JointPoints> points;     ///< damage and largest opening and slip  (pairs)
-  Stored<JointForcesOf> force;    ///< of this time  [N/m]  (pairs)
-  Buffer<JointWork> work;         ///< taken up so far  [J/m]  (pairs)
-  Buffer<double> broke_at;        ///< below 0: it is not broken  [s]  (pairs)
-  Buffer<double> pressing;        ///< compressive force when it broke  [N/m]  (pairs)
-  Buffer<double> shear_at_break;  ///< on side a along its edge  [N/m]  (pairs)
+  Buffer<Index> edge_a, edge_b;    ///< the two edges that it joins  [-]  (set-up, ranks)
+  Buffer<Index> law;               ///< index into Case::bonds  [-]  (constant)
+  Buffer<double> length;           ///< at the start  [m]  (constant)
+  Buffer<double> strength;         ///< over its law's  [-]  (constant)
+  Buffer<Vec2> preset;             ///< opening and slip at which it was joined; empty: none  [m]
+                                   ///< (set-up, insertion)
+  Buffer<JointStage> stage;        ///<  [-]  (insertion, pairs, stage)
+  Buffer<JointPoints> points;      ///< damage and largest opening and slip  (pairs)
+  Stored<JointForcesOf> force;     ///< of this time  [N/m]  (pairs)
+  Buffer<JointWork> work;          ///< taken up so far  [J/m]  (pairs)
+  Buffer<double> broke_at;         ///< below 0: it is not broken  [s]  (pairs)
+  Buffer<JointHandover> handover;  ///< of when it broke  [SI]  (pairs)
   /// Of its work, what contact of its faces began with; of a joint that is cut, what it had spent
   /// by then.  [J/m]  (pairs, stage)
   Buffer<JointWork> inherited_work;
@@ -88,8 +103,7 @@ struct Joints {
     field("points", "-", points);
     field("work", "J/m", work);
     field("broke_at", "s", broke_at);
-    field("pressing", "N/m", pressing);
-    field("shear_at_break", "N/m", shear_at_break);
+    field("handover", "SI", handover);
     field("inherited_work", "J/m", inherited_work);
   }
   Index size() const { return edge_a.size(); }

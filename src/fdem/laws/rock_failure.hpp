@@ -215,5 +215,11 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   return {0.5 * t.normal * opening,
           0.5 * t.kept * slip + 0.5 * t.friction * t.friction * h / law.stiffness};
 }
+/// Of it, what contact of the faces can take over: that of a point that is pressed.  [J/m2]
+BR_HD inline StoredEnergy stored_pressed(const JointBond& law, double strength, double h,
+                                         double opening, double slip,
+                                         const BondState<double>& state) {
+  return opening < 0.0 ? stored(law, strength, h, opening, slip, state) : StoredEnergy{};
+}
 
 }  // namespace breccia::fdem

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -150,6 +151,7 @@ std::vector<PressedFace> press_faces(World& w) {
   const InSituConfig& in_situ = w.given->in_situ;
   if (!in_situ.any()) return {};
   Given given(w);
+  constexpr double any = std::numeric_limits<double>::infinity();
   std::vector<PressedFace> faces;
   std::vector<Index> unable;
   Shifts shifts;
@@ -179,7 +181,7 @@ std::vector<PressedFace> press_faces(World& w) {
           -normal / (3.0 * law.penalty * (1.0 / given.height(a.edge) + 1.0 / given.height(b.edge)));
       shifts.ask(a.edge, 0.5 * overlap);
       shifts.ask(b.edge, 0.5 * overlap);
-      faces.push_back({a.edge, b.edge, -normal * length, shear * length});
+      faces.push_back({a.edge, b.edge, {-normal * length, shear * length, {any, any}}});
     }
   std::map<Index, Vec2> shift;
   for (const Index t : shifts.triangles()) {
@@ -214,8 +216,8 @@ void load_faces(World& w, const std::vector<PressedFace>& faces) {
     split(given.nodes[at(face.edge_b / 3)], xb, vb);
     const int edges[2] = {face.edge_a % 3, face.edge_b % 3};
     CoupleForces<double>::begin_pressed(
-        face.pressing, face.shear_at_break, edges, given.contact(face.edge_a / 3, face.edge_b / 3),
-        state[found->second], xa, Target::of(xa), xb, Target::of(xb));
+        face.bears, edges, given.contact(face.edge_a / 3, face.edge_b / 3), state[found->second],
+        xa, Target::of(xa), xb, Target::of(xb));
   }
   copy_to(w.couples.history.state, state);
 }

@@ -9,9 +9,8 @@ namespace breccia::fdem {
 
 /// Two edges, or parts of them, that press on each other as the stress in situ asks.
 struct PressedFace {
-  Index edge_a, edge_b;   ///< 3 triangle + edge; the triangle of a is the lower one
-  double pressing;        ///< between them  [N/m]
-  double shear_at_break;  ///< on a, along its edge  [N/m]
+  Index edge_a, edge_b;  ///< 3 triangle + edge; the triangle of a is the lower one
+  JointHandover bears;   ///< its forces, and work without bound: it is there from the start
 };
 
 /// Finds faces of open cracks and of touching bodies, and moves their triangles into each other by

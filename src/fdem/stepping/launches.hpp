@@ -26,8 +26,7 @@ JointForces<Number> joint_kernel(World& w) {
           j.force.as<Number>().view(),
           j.work.view(),
           j.broke_at.view(),
-          j.pressing.view(),
-          j.shear_at_break.view(),
+          j.handover.view(),
           w.exposed.changed.view()};
 }
 
@@ -46,8 +45,7 @@ CoupleForces<Number> couple_kernel(World& w) {
           c.pairs.b.view(),
           std::as_const(w.parent_joint).view(),
           {std::as_const(j.edge_a).view(), std::as_const(j.edge_b).view(),
-           std::as_const(j.pressing).view(), std::as_const(j.shear_at_break).view(),
-           j.inherited_work.view()},
+           std::as_const(j.handover).view(), j.inherited_work.view()},
           c.history.state.view(),
           c.history.force.as<Number>().view()};
 }

@@ -361,7 +361,7 @@ struct CoupleForces {
     if (spring > held.slide) drag = sqrt(held.slide / spring) * drag;
     kept.drag = drag;
     kept.spring = max(0.0, stiffness);
-    const JointWork given{min(energy, held.open), min(spring, held.slide)};
+    const JointWork given = JointWork{energy, spring}.within(held);
     kept.work = given.open + given.slide;
     kept.sprung = given.slide;
     legacy->inherited = given;

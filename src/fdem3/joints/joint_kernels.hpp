@@ -356,13 +356,9 @@ struct JointForces {
       kept->pressing = max(0.0, pressure);
       kept->shear_at_break = drag;
       kept->held = {};
-      for (int q = 0; q < 3; ++q) {
-        if (!(open[q] < 0.0)) continue;
-        const fdem::StoredEnergy stored =
-            fdem::stored(bond, strength[i], h, open[q], slid[q], state.point[q]);
-        kept->held.open += area / 3.0 * stored.open;
-        kept->held.slide += area / 3.0 * stored.slide;
-      }
+      for (int q = 0; q < 3; ++q)
+        kept->held.add(area / 3.0, fdem::stored_pressed(bond, strength[i], h, open[q], slid[q],
+                                                        state.point[q]));
       finish(i, *kept);
     }
   }

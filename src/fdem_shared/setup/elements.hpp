@@ -182,8 +182,7 @@ void begin_joints(Joints& j, Index count) {
   } else {
     copy_to(j.broke_at, std::vector<double>(at(count), -1.0));
     j.points.resize(count);
-    j.pressing.resize(count);
-    j.shear_at_break.resize(count);
+    j.handover.resize(count);
     j.inherited_work.resize(count);
   }
 }

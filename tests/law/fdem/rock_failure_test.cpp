@@ -293,5 +293,24 @@ TEST(RockFailure, sheared_edge_takes_g_ii_and_keeps_its_residual_friction) {
   }
 }
 
+/// Contact takes over what a pressed point holds, whole, softened or failed, and nothing of one
+/// that is open.
+TEST(RockFailure, only_pressed_points_hold_what_contact_can_take) {
+  const JointBond b = bond();
+  for (const Failure how : {Failure::none, Failure::torn, Failure::sheared})
+    for (const double opening : {-2e-7, 2e-7}) {
+      BondState<double> s{};
+      const double slip = 3e-7;
+      const BondTraction<double> carried = response(b, 1.0, h, opening, slip, s);
+      if (how != Failure::none) fail(b, 1.0, h, how, opening, slip, carried, s);
+      const StoredEnergy all = stored(b, 1.0, h, opening, slip, s);
+      const StoredEnergy taken = stored_pressed(b, 1.0, h, opening, slip, s);
+      EXPECT_GT(all.open, 0.0);
+      EXPECT_GT(all.slide, 0.0);
+      EXPECT_EQ(taken.open, opening < 0.0 ? all.open : 0.0);
+      EXPECT_EQ(taken.slide, opening < 0.0 ? all.slide : 0.0);
+    }
+}
+
 }  // namespace rock_failure_test
 }  // namespace breccia::fdem
