@@ -72,16 +72,19 @@ BR_HD inline int exposed_faces(const FaceJoints& faces, const View<const JointSt
   return exposed;
 }
 
-/// Sums over both passes of a couple: faces of a in b, then faces of b in a.
+/// Sums over both passes of a couple: faces of a in b, then faces of b in a. Forces are those of
+/// all faces, joined ones too, so that they are the slope of the overlap's energy whatever its
+/// neighbours do; those of joined faces cancel where the neighbour presses as hard.
 struct Pressing {
   CoupleForce force{};
-  Vec3 on_a{};    ///< N  [N]
+  Vec3 on_a{};    ///< N, of exposed faces  [N]
   Vec3 centre{};  ///< weighted by `weight`  [N m]
   double weight = 0.0;
   double area = 0.0;    ///< of both passes  [m2]
+  double joined = 0.0;  ///< area of faces inside that are joined  [m2]
   double energy = 0.0;  ///< of the overlap  [J]
 
-  BR_HD bool touches() const { return weight > 0.0; }
+  BR_HD bool touches() const { return weight > 0.0 || energy > 0.0; }
   /// Takes off what an overlap began with: with E the energy of the overlap and E_0 that at the
   /// beginning, the couple has (E - E_0)^2/E beyond E_0, and its forces are the slope of that.
   BR_HD void take_off(double begun) {
@@ -124,8 +127,7 @@ BR_HD inline bool exposed_reaches_into(const Partner& one, const Target& target)
 
 inline constexpr double least_moment = 1e-300;  ///< of an overlap, over twice the area  [m]
 
-/// Adds the exposed faces of one tetrahedron that are in the other; and what all of its faces tell
-/// of the overlap.
+/// Adds the faces of one tetrahedron that are in the other; only exposed ones touch and rub.
 /// @param inside  of the target  @param own  of the tetrahedron itself
 BR_HD inline void add_faces(const Partner& one, const Target& target, double penalty, bool of_a,
                             Pressing& sum, Inside& inside, Inside& own) {
@@ -141,11 +143,14 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
     const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
     inside.add_other(o, face);
     own.add_own(f, area);
-    if ((one.exposed >> f & 1) == 0) continue;
     Vec3 on_face[3], on_target[4];
     push(o, face, penalty, on_face, on_target);
     for (int k = 0; k < 3; ++k) on_own.at[corner_of_face(f, k)] += on_face[k];
     for (int k = 0; k < 4; ++k) on_other.at[k] += on_target[k];
+    if ((one.exposed >> f & 1) == 0) {
+      sum.joined += area;
+      continue;
+    }
     const Vec3 whole = on_face[0] + on_face[1] + on_face[2];
     const double size = norm(whole), all = o.moment[0] + o.moment[1] + o.moment[2];
     if (!(abs(all) > least_moment)) continue;  // a sum of rounding: it has no middle
@@ -210,7 +215,7 @@ struct CoupleForces {
     split(nb, of_b.x, vb);
     const bool meeting = !boxes_apart(of_a.x, of_b.x, 0.0) && meet(of_a, of_b);
     // It has begun and holds nothing: its forces are zero already.
-    const bool resting = !is_new && kept.work == 0.0 && kept.slid == 0.0;
+    const bool holds = kept.work != 0.0 || kept.slid != 0.0, resting = !is_new && !holds;
     if (!meeting && resting) return;
     Pressing sum;
     if (meeting) {
@@ -218,9 +223,10 @@ struct CoupleForces {
       of_b.exposed = exposed[b[i]];
       const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
       if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, of_a, of_b);
-      press(law.penalty * kept.scale, of_a, of_b, sum);
-      // Neighbours at a vertex become a couple some steps after a joint there has softened.
-      if (is_new && kept.work == 0.0) kept.begun = sum.energy;
+      press(law.penalty * kept.scale, of_a, of_b, holds, sum);
+      // Neighbours at a vertex become a couple some steps after a joint there has softened, or
+      // have overlapped by joined faces before an exposed one reached in.
+      if (!holds && kept.work == 0.0 && (is_new || sum.joined > 0.0)) kept.begun = sum.energy;
       sum.take_off(kept.begun);
       if (sum.touches()) rub(law, of_a.target, va, of_b.target, vb, kept, sum);
     }
@@ -261,7 +267,7 @@ struct CoupleForces {
     Pressing sum;
     press((kept.scale == 0.0 ? 1.0 : kept.scale) *
               laws[material[a[i]] * materials + material[b[i]]].penalty,
-          of_a, of_b, sum);
+          of_a, of_b, kept.work != 0.0 || kept.slid != 0.0, sum);
     sum.take_off(kept.begun);
     return sum.on_a;
   }
@@ -281,13 +287,18 @@ struct CoupleForces {
     b.target.measure_heights();
     return true;
   }
-  BR_HD static void press(double penalty, const Partner& a, const Partner& b, Pressing& sum) {
+  /// @param holds  whether the couple has pressed before: then it does until the overlap ends
+  BR_HD static void press(double penalty, const Partner& a, const Partner& b, bool holds,
+                          Pressing& sum) {
     // Beside a surface most neighbours at an edge or a corner overlap by faces that are joined.
-    if (!exposed_reaches_into(a, b.target) && !exposed_reaches_into(b, a.target)) return;
+    if (!holds && !exposed_reaches_into(a, b.target) && !exposed_reaches_into(b, a.target)) return;
     Inside in_a(a.target), in_b(b.target);
     add_faces(a, b.target, penalty, true, sum, in_b, in_a);
     add_faces(b, a.target, penalty, false, sum, in_a, in_b);
-    if (!sum.touches()) return;
+    if (!holds && !sum.touches()) {
+      sum = {};
+      return;
+    }
     in_a.add_shape_forces(a.target, penalty, sum.force.on_a.at);
     in_b.add_shape_forces(b.target, penalty, sum.force.on_b.at);
     sum.energy = in_a.energy(penalty) + in_b.energy(penalty);
@@ -339,7 +350,7 @@ struct CoupleForces {
     if (legacy == nullptr || !(legacy->pressing > 0.0)) return;
     const double pressing = legacy->pressing;
     Pressing whole;
-    press(law.penalty, of_a, of_b, whole);
+    press(law.penalty, of_a, of_b, false, whole);
     const double size = norm(whole.on_a);
     if (!(size > 0.0)) return;
     const JointWork held = legacy->held;

@@ -30,14 +30,12 @@ Target target_of(const Body& body) {
 }
 
 /// Forces of the faces of both, with a penalty of 1.
-/// @param of_a_push, of_b_push  bits of the faces that push: all
-Pair forces_of(const Body& a, const Body& b, bool with_shape = false, int of_a_push = 15,
-               int of_b_push = 15) {
+Pair forces_of(const Body& a, const Body& b, bool with_shape = false) {
   Pair sum;
   const Target of_a = target_of(a), of_b = target_of(b);
   Inside in_a(of_a), in_b(of_b);
   const auto add = [&](const Body& own, const Target& target, Vec3(&on_own)[4], Vec3(&on_other)[4],
-                       Inside& inside, Inside& mine, int pushing) {
+                       Inside& inside, Inside& mine) {
     for (int f = 0; f < 4; ++f) {
       Vec3 face[3], on_face[3], on_target[4];
       for (int k = 0; k < 3; ++k) face[k] = own.x[corner_of_face(f, k)];
@@ -46,14 +44,13 @@ Pair forces_of(const Body& a, const Body& b, bool with_shape = false, int of_a_p
       ++sum.hits;
       inside.add_other(o, face);
       mine.add_own(f, o.area * norm(cross(face[1] - face[0], face[2] - face[0])));
-      if ((pushing >> f & 1) == 0) continue;
       push(o, face, 1.0, on_face, on_target);
       for (int k = 0; k < 3; ++k) on_own[corner_of_face(f, k)] += on_face[k];
       for (int k = 0; k < 4; ++k) on_other[k] += on_target[k];
     }
   };
-  add(a, of_b, sum.on_a, sum.on_b, in_b, in_a, of_a_push);
-  add(b, of_a, sum.on_b, sum.on_a, in_a, in_b, of_b_push);
+  add(a, of_b, sum.on_a, sum.on_b, in_b, in_a);
+  add(b, of_a, sum.on_b, sum.on_a, in_a, in_b);
   sum.energy = in_a.energy(1.0) + in_b.energy(1.0);
   if (with_shape) {
     in_a.add_shape_forces(of_a, 1.0, sum.on_a);
@@ -95,7 +92,8 @@ TEST(DistanceContact, gives_the_reference_forces_and_energy_with_those_of_shape)
 }
 
 /// Forces on a and b by the kernel of couples, which exposes faces by bits.
-CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b) {
+/// @param held  whether the couple has pressed before
+CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b, bool held = true) {
   const auto buffer = []<class T>(const std::vector<T>& items) {
     Buffer<T> made;
     copy_to(made, items);
@@ -114,8 +112,8 @@ CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b) 
   const Buffer<Index> no_joint = buffer(std::vector<Index>{-1});
   Buffer<CoupleState> state(Space::host, 1);
   Buffer<CoupleForce> force(Space::host, 1);
-  state.data()[0].scale = 1.0;  // it is not new: nothing is taken off
-  state.data()[0].slid = 1.0;   // and does not rest
+  state.data()[0].scale = 1.0;           // it is not new: nothing is taken off
+  if (held) state.data()[0].slid = 1.0;  // and does not rest
   for_each(Exec{}, 1,
            CoupleForces{0.0,
                         nodes.view(),
@@ -132,20 +130,33 @@ CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b) 
   return force.data()[0];
 }
 
-/// A fragment's free corner in the joined flank of another: faces of one alone are exposed.
+/// A fragment's free corner in the joined flank of another: faces of one alone are exposed. Joined
+/// faces push with them, so that forces are the slope of the couple's energy.
 TEST(DistanceContact, pushes_where_faces_of_one_alone_are_exposed) {
   const struct { std::uint8_t of_a, of_b; } cases[] = {{15, 0}, {0, 15}, {15, 15}, {15, 1}, {0, 0}};
   for (const auto& c : cases) {
     SCOPED_TRACE(testing::Message() << int{c.of_a} << " " << int{c.of_b});
     const CoupleForce force = couple_forces(c.of_a, c.of_b);
     const bool any = c.of_a + c.of_b != 0;
-    const Pair expected = any ? forces_of(a, b, true, c.of_a, c.of_b) : Pair{};
+    const Pair expected = any ? forces_of(a, b, true) : Pair{};
     for (int k = 0; k < 4; ++k) {
       expect_near(force.on_a.at[k], expected.on_a[k]);
       expect_near(force.on_b.at[k], expected.on_b[k]);
     }
     EXPECT_EQ(norm(force.on_a.at[3]) > 1e-6, any);
   }
+}
+
+/// What overlapped by joined faces before an exposed one reached in begins without force; what
+/// meets by exposed faces alone has its force at once.
+TEST(DistanceContact, begins_without_the_overlap_of_joined_faces) {
+  const CoupleForce joined = couple_forces(15, 1, false), free = couple_forces(15, 15, false);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(norm(joined.on_a.at[k]), 0.0);
+    EXPECT_EQ(norm(joined.on_b.at[k]), 0.0);
+  }
+  const Pair expected = forces_of(a, b, true);
+  for (int k = 0; k < 4; ++k) expect_near(free.on_a.at[k], expected.on_a[k]);
 }
 
 /// Of the corner element (0, e1, e2, e3) and a face given by its corners.
