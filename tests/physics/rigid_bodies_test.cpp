@@ -116,6 +116,21 @@ TEST(RigidBodies, keep_the_velocity_of_what_is_not_free) {
   EXPECT_LT(norm(plane_body(w, 0).centre - body.centre - way), 1e-9 * norm(way));
 }
 
+/// Without "turn" a push beside the centre moves it, and does not turn it.
+TEST(RigidBodies, do_not_turn_unless_they_may) {
+  fdem::testing::Scene s = plate();
+  s.config.supports[0].free = {"x", "y"};
+  fdem::LoadConfig& push =
+      s.load("push", "pressure", {0.0199, -fdem::testing::far}, {fdem::testing::far, -0.0299});
+  push.pressure = 1e6;
+  fdem::World w = s.world();
+  const fdem::World start = w;
+  const PlaneBody body = plane_body(w, 0);
+  fdem::testing::run_to(w, 1e-4);
+  EXPECT_GT(norm(plane_body(w, 0).centre - body.centre), 1e-6);
+  EXPECT_NEAR(angle_since(start, w, 0), 0.0, 1e-12);
+}
+
 /// On a floor with friction mu, under gravity aslant: g_x - mu g_y.
 TEST(RigidBodies, slide_down_a_slope) {
   fdem::testing::Scene s;

@@ -84,6 +84,13 @@ struct Pressing {
   double joined = 0.0;  ///< area of faces inside that are joined  [m2]
   double energy = 0.0;  ///< of the overlap  [J]
 
+  /// Work that moving on with these velocities takes in a time.  [J]
+  BR_HD double taken_in(double time, const Vec3 (&va)[4], const Vec3 (&vb)[4]) const {
+    double power = 0.0;
+    for (int k = 0; k < 4; ++k)
+      power += dot(force.on_a.at[k], va[k]) + dot(force.on_b.at[k], vb[k]);
+    return -time * power;
+  }
   BR_HD bool touches() const { return weight > 0.0 || energy > 0.0; }
   /// Takes off what an overlap began with: with E the energy of the overlap and E_0 that at the
   /// beginning, the couple has (E - E_0)^2/E beyond E_0, and its forces are the slope of that.
@@ -225,8 +232,14 @@ struct CoupleForces {
       if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, of_a, of_b);
       press(law.penalty * kept.scale, of_a, of_b, holds, sum);
       // Neighbours at a vertex become a couple some steps after a joint there has softened, or
-      // have overlapped by joined faces before an exposed one reached in.
-      if (!holds && kept.work == 0.0 && (is_new || sum.joined > 0.0)) kept.begun = sum.energy;
+      // have overlapped by joined faces before an exposed one reached in: by more than the last
+      // step can have brought.
+      if (!holds && kept.work == 0.0) {
+        if (is_new)
+          kept.begun = sum.energy;
+        else if (sum.joined > 0.0)
+          kept.begun = max(0.0, sum.energy - sum.taken_in(dt, va, vb));
+      }
       sum.take_off(kept.begun);
       if (sum.touches()) rub(law, of_a.target, va, of_b.target, vb, kept, sum);
     }

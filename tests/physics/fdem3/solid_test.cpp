@@ -294,7 +294,7 @@ TEST(Tetrahedra, book_every_joule_of_cubes_that_break_each_other) {
       EXPECT_GT(cracks(w).size(), 20U);
       EXPECT_GT(b.friction, 0.0);
       EXPECT_LT(b.error_relative, 5e-3);
-      EXPECT_LT(std::abs(b.contact), 1e-2 * start) << criterion;
+      EXPECT_LT(std::abs(b.contact), 5e-3 * start) << criterion;
       if (before > 0.0) {
         EXPECT_LT(std::abs(b.contact), 0.5 * before) << criterion;
       }
