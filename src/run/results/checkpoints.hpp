@@ -36,7 +36,8 @@ class Checkpoints {
   /// @throws IoError; the older checkpoints are then all there
   void write(std::int64_t step, const CheckpointWriter& state) const;
 
-  /// The line that tells how a run that was cut short goes on in `folder`; empty where none is kept.
+  /// The line that tells how a run that was cut short goes on in `folder`; empty where none is
+  /// kept.
   std::string way_on(const std::string& folder) const;
 
   /// The step of the newest checkpoint that was begun, -1 if none.

@@ -42,8 +42,7 @@ TEST(ImpactEnergy, error_falls_with_the_square_of_the_step) {
 TEST(ImpactEnergy, is_booked_at_all_speeds) {
   double broken = 0.0;
   for (const double speed : {5.0, 20.0, 60.0, 100.0}) {
-    const Shattered s =
-        shatter("rock", speed, 0.02, 0.7);
+    const Shattered s = shatter("rock", speed, 0.02, 0.7);
     EXPECT_LT(s.missing, 1e-3) << speed;
     EXPECT_GE(s.broken, broken);
     broken = s.broken;
