@@ -1,5 +1,5 @@
 #pragma once
-// What a case may have meant by a key that its method does not have.
+// Hints for keys that the method of a case does not have.
 
 #include <string>
 

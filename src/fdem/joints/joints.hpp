@@ -61,7 +61,7 @@ struct JointWork {
   }
 };
 
-/// What a joint that breaks hands to the contact of its faces.
+/// Forces and work that a joint which breaks hands to the contact of its faces.
 struct JointHandover {
   double pressing = 0.0;  ///< compressive force  [N/m]
   double shear = 0.0;     ///< on side a along its edge  [N/m]

@@ -56,7 +56,7 @@ bool reaches(const Region& region, const Vec3& x, const std::string& body,
   return true;
 }
 
-/// What a pressure is at the start.  [Pa]
+/// Size of a pressure at the start.  [Pa]
 template <class Load>
 double first_pressure(const Load& load) {
   if (load.history.ramp > 0.0) return 0.0;
