@@ -3,7 +3,7 @@
 // step; a warp that takes 32 of all waits for those of them that do.
 //
 // A launch of ListBusy looks at all couples and lists the others than those at rest apart; a launch
-// of BusyWide or BusyInTurn evaluates the list; the sums of forces empty it (EmptiesList). The
+// of BusyWide or BusyWhereDue evaluates the list; the sums of forces empty it (EmptiesList). The
 // order of the list changes from run to run, but each couple writes only its own forces.
 
 #include "core/kernel.hpp"
@@ -87,22 +87,31 @@ struct BusyWide {
   }
 };
 
-/// Busy couples by `threads` threads, each of which takes every threads-th couple.
-template <class Couples>
-struct BusyInTurn {
-  static constexpr const char* name = Couples::name;
-  Couples all;
+/// Busy couples by the threads of `groups` groups: each thread looks whether one of them is due,
+/// and all of its group evaluate those that are.
+/// @tparam Wide  kernel of all couples by `width` threads each
+template <class Wide>
+struct BusyWhereDue {
+  static constexpr const char* name = Wide::name;
+  static constexpr Index width = Wide::width;
+  Wide wide;
   View<const Index> busy, count;
-  Index threads;
+  Index groups;
 
-  BR_HD void set(const StepTime& now) { all.set(now); }
-  BR_HD void operator()(Index i) const {
+  BR_HD void set(const StepTime& now) { wide.set(now); }
+  BR_HD void operator()(Index i) const { at(wide.dt(), i); }
+  BR_HD void update_at(const StepTime& now, Index i) const { at(now.last_dt, i); }
+
+ private:
+  BR_HD void at(double dt, Index i) const {
+    const LaneGroup<width> group;
     const Index end = count[0];
-    for (Index k = i; k < end; k += threads) all.slow(busy[k]);
-  }
-  BR_HD void update_at(const StepTime& now, Index i) const {
-    const Index end = count[0];
-    for (Index k = i; k < end; k += threads) run_slow(&all, now, busy[k]);
+    for (Index first = i / width; first < end; first += groups * width) {
+      const Index mine = first + groups * (i % width);
+      unsigned due = group.ballot(mine < end && wide.is_due(busy[mine]));
+      for (Index k = first; due != 0; due >>= 1, k += groups)
+        if ((due & 1U) != 0) wide.evaluate(dt, busy[k], static_cast<int>(i % width));
+    }
   }
 };
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "io/round_numbers.hpp"
 #include "math/constants.hpp"
@@ -352,12 +354,16 @@ class Findings {
                            : fmt::format("by sliding ({} of the fracture energy)",
                                          percent_text(slide / (open + slide)));
     const double fracture = record_.number("energy.fracture").value_or(0.0);
-    const double plastic = record_.number("energy.plastic").value_or(0.0);
     if (fracture <= 0.0) return "";
-    return fmt::format("and took {} in cracks{}", value_text(fracture, energy_unit()),
-                       plastic > 1e-9 * fracture
-                           ? " besides " + value_text(plastic, energy_unit()) + " of plastic slip"
-                           : "");
+    std::vector<std::string> others;
+    for (const auto& [column, words] :
+         {std::pair{"plastic", "of plastic slip"}, std::pair{"friction", "of friction"}}) {
+      const double spent = record_.number(std::string("energy.") + column).value_or(0.0);
+      if (spent > 1e-9 * fracture) others.push_back(value_text(spent, energy_unit()) + " " + words);
+    }
+    return fmt::format(
+        "and took {} in cracks{}", value_text(fracture, energy_unit()),
+        others.empty() ? "" : fmt::format(" besides {}", fmt::join(others, " and ")));
   }
 
   /// The largest force that a probe read, and what of it is left.

@@ -72,6 +72,15 @@ BR_HD inline int exposed_faces(const FaceJoints& faces, const View<const JointSt
   return exposed;
 }
 
+/// Actions of a face of one tetrahedron that is partly in the other.
+struct FacePart {
+  Vec3 on_face[3], on_target[4];  ///< forces on its corners and on those of the other  [N]
+  Inside::FaceShare inside;       ///< of the other
+  bool exposed;                   ///< nothing joins it: it touches and rubs
+  bool pushes;                    ///< exposed, and more than a sum of rounding, without a middle
+  double size;                    ///< of its push  [N]
+  Vec3 push, moment;              ///< sum of on_face; its middle times `size`  [N], [N m]
+};
 /// Sums over both passes of a couple: faces of a in b, then faces of b in a. Forces are those of
 /// all faces, joined ones too, so that they are the slope of the overlap's energy whatever its
 /// neighbours do; those of joined faces cancel where the neighbour presses as hard.
@@ -84,6 +93,15 @@ struct Pressing {
   double joined = 0.0;  ///< area of faces inside that are joined  [m2]
   double energy = 0.0;  ///< of the overlap  [J]
 
+  /// Adds what a face brings besides forces on corners.
+  BR_HD void add(const FacePart& part, bool of_a) {
+    if (!part.exposed) joined += part.inside.area;
+    if (!part.pushes) return;
+    on_a += of_a ? part.push : -part.push;
+    centre += part.moment;
+    weight += part.size;
+    area += part.inside.area;
+  }
   /// Work that moving on with these velocities takes in a time.  [J]
   BR_HD double taken_in(double time, const Vec3 (&va)[4], const Vec3 (&vb)[4]) const {
     double power = 0.0;
@@ -92,12 +110,23 @@ struct Pressing {
     return -time * power;
   }
   BR_HD bool touches() const { return weight > 0.0 || energy > 0.0; }
+  /// Whether friction acts on a couple that touches.
+  BR_HD bool rubs(const ContactPair& law) const {
+    return touches() && law.friction > 0.0 && norm(on_a) > 0.0 && stiffness(law) > 0.0;
+  }
+  BR_HD double stiffness(const ContactPair& law) const { return law.tangential * 0.5 * area; }
+  /// Centre of pressure.  [m]
+  BR_HD Vec3 middle() const { return (1.0 / weight) * centre; }
+  /// Share of the forces that are left beyond this energy.  [-]
+  BR_HD double share_beyond(double begun) const {
+    const double ratio = begun / energy;
+    return energy > begun ? 1.0 - ratio * ratio : 0.0;
+  }
   /// Takes off what an overlap began with: with E the energy of the overlap and E_0 that at the
   /// beginning, the couple has (E - E_0)^2/E beyond E_0, and its forces are the slope of that.
   BR_HD void take_off(double begun) {
     if (!(begun > 0.0)) return;
-    const double ratio = begun / energy;
-    const double share = energy > begun ? 1.0 - ratio * ratio : 0.0;
+    const double share = share_beyond(begun);
     for (int k = 0; k < 4; ++k) {
       force.on_a.at[k] = share * force.on_a.at[k];
       force.on_b.at[k] = share * force.on_b.at[k];
@@ -116,23 +145,51 @@ struct Partner {
   BR_HD bool has_volume() const { return target.six_volumes > 0.0; }
 };
 
-/// Coordinates of the corners of a face of one tetrahedron in the other.
-BR_HD inline void face_in_other(const Partner& one, int face, double (&lambda)[3][4]) {
+/// Coordinates of the corners of a face, of those of all corners.
+BR_HD inline void corners_of_face(const CornersInside& all, int face, double (&lambda)[3][4]) {
   for (int k = 0; k < 3; ++k)
-    for (int m = 0; m < 4; ++m) lambda[k][m] = one.in_other.lambda[corner_of_face(face, k)][m];
+    for (int m = 0; m < 4; ++m) lambda[k][m] = all.lambda[corner_of_face(face, k)][m];
 }
 /// Whether an exposed face of one tetrahedron reaches into the other: no other face pushes.
 BR_HD inline bool exposed_reaches_into(const Partner& one, const Target& target) {
   for (int f = 0; f < 4; ++f) {
     if ((one.exposed >> f & 1) == 0) continue;
     double lambda[3][4];
-    face_in_other(one, f, lambda);
+    corners_of_face(one.in_other, f, lambda);
     if (face_reaches_into(target, lambda)) return true;
   }
   return false;
 }
 
 inline constexpr double least_moment = 1e-300;  ///< of an overlap, over twice the area  [m]
+
+/// @param x       corners of the tetrahedron of the face  @param in_target  they in the target
+/// @param inside  of the target
+/// @returns whether any part of the face is in the target
+BR_HD inline bool part_of_face(const Vec3 (&x)[4], const CornersInside& in_target, int f,
+                               bool exposed, const Target& target, const Inside& inside,
+                               double penalty, bool of_a, FacePart& part) {
+  Vec3 face[3];
+  FaceOverlap o;
+  for (int k = 0; k < 3; ++k) face[k] = x[corner_of_face(f, k)];
+  corners_of_face(in_target, f, o.lambda);
+  settle_plane(of_a, in_target.lambda[f], o.lambda);
+  if (!overlap_of_face(target, o)) return false;
+  part.inside = inside.share_of(o, face);
+  push(o, face, penalty, part.on_face, part.on_target);
+  const double all = o.moment[0] + o.moment[1] + o.moment[2];
+  part.exposed = exposed;
+  part.pushes = exposed && abs(all) > least_moment;
+  part.push = part.moment = {};
+  part.size = 0.0;
+  if (!part.pushes) return true;
+  part.push = part.on_face[0] + part.on_face[1] + part.on_face[2];
+  part.size = norm(part.push);
+  const Vec3 middle =
+      (1.0 / all) * (o.moment[0] * face[0] + o.moment[1] * face[1] + o.moment[2] * face[2]);
+  part.moment = part.size * middle;
+  return true;
+}
 
 /// Adds the faces of one tetrahedron that are in the other; only exposed ones touch and rub.
 /// @param inside  of the target  @param own  of the tetrahedron itself
@@ -141,33 +198,70 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
   Corners& on_own = of_a ? sum.force.on_a : sum.force.on_b;
   Corners& on_other = of_a ? sum.force.on_b : sum.force.on_a;
   for (int f = 0; f < 4; ++f) {
-    Vec3 face[3];
-    FaceOverlap o;
-    for (int k = 0; k < 3; ++k) face[k] = one.x[corner_of_face(f, k)];
-    face_in_other(one, f, o.lambda);
-    settle_plane(of_a, one.in_other.lambda[f], o.lambda);
-    if (!overlap_of_face(target, o)) continue;
-    const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
-    inside.add_other(o, face);
-    own.add_own(f, area);
-    Vec3 on_face[3], on_target[4];
-    push(o, face, penalty, on_face, on_target);
-    for (int k = 0; k < 3; ++k) on_own.at[corner_of_face(f, k)] += on_face[k];
-    for (int k = 0; k < 4; ++k) on_other.at[k] += on_target[k];
-    if ((one.exposed >> f & 1) == 0) {
-      sum.joined += area;
+    FacePart part;
+    if (!part_of_face(one.x, one.in_other, f, (one.exposed >> f & 1) != 0, target, inside, penalty,
+                      of_a, part))
       continue;
-    }
-    const Vec3 whole = on_face[0] + on_face[1] + on_face[2];
-    const double size = norm(whole), all = o.moment[0] + o.moment[1] + o.moment[2];
-    if (!(abs(all) > least_moment)) continue;  // a sum of rounding: it has no middle
-    const Vec3 middle =
-        (1.0 / all) * (o.moment[0] * face[0] + o.moment[1] * face[1] + o.moment[2] * face[2]);
-    sum.on_a += of_a ? whole : -whole;
-    sum.centre += size * middle;
-    sum.weight += size;
-    sum.area += area;
+    inside.add_other(part.inside);
+    own.add_own(f, part.inside.area);
+    for (int k = 0; k < 3; ++k) on_own.at[corner_of_face(f, k)] += part.on_face[k];
+    for (int k = 0; k < 4; ++k) on_other.at[k] += part.on_target[k];
+    sum.add(part, of_a);
   }
+}
+
+/// Energy that a couple takes off: neighbours at a vertex become one some steps after a joint there
+/// has softened, or have overlapped by joined faces before an exposed one reached in: by more than
+/// the last step can have brought.
+/// @param taken_in  Pressing::taken_in of the last step  [J]
+BR_HD inline void note_begun(bool is_new, double taken_in, CoupleState& kept, const Pressing& sum) {
+  if (is_new)
+    kept.begun = sum.energy;
+  else if (sum.joined > 0.0)
+    kept.begun = max(0.0, sum.energy - taken_in);
+}
+
+/// Pull of friction on a, by the spring of the couple.  [N]
+/// @param rate  velocity of a against b at the centre of pressure  [m/s]
+BR_HD inline Vec3 pull_of(const ContactPair& law, double dt, Vec3 rate, const Pressing& sum,
+                          CoupleState& kept) {
+  const double size = norm(sum.on_a), stiffness = sum.stiffness(law);
+  const Vec3 n = (1.0 / size) * sum.on_a;
+  rate -= dot(rate, n) * n;
+  // Turned with the plane of contact, its length kept.
+  Vec3 before = kept.drag - dot(kept.drag, n) * n;
+  const double left = norm(before), had = norm(kept.drag);
+  const double most = law.friction * size;
+  // The spring keeps, as the area changes, its energy T^2/(2 k).
+  const double stiffer = kept.spring > 0.0 ? sqrt(stiffness / kept.spring) : 1.0;
+  if (left > 0.0) before = (stiffer * had / left) * before;
+  kept.spring = stiffness;
+  Vec3 pull = before - (stiffness * dt) * rate;
+  const double tried = norm(pull);
+  if (tried > most) pull = (most / tried) * pull;
+  const double taken = -0.5 * dt * dot(before + pull, rate);
+  fdem::FrictionWork friction_work;
+  friction_work.add(taken, 0.5 * dot(pull, pull) / stiffness);
+  friction_work.book(kept.slid, kept.sprung);
+  kept.drag = pull;
+  return pull;
+}
+
+/// Ends the step of a couple of which the work has been added up.
+BR_HD inline void end_step(bool touches, CoupleState& kept) {
+  if (touches) {
+    // Not even one that has taken up nothing rests: its forces must end.
+    if (kept.work == 0.0 && kept.slid == 0.0) kept.work = 1e-300;
+    return;
+  }
+  kept.slid += kept.sprung;  // what the spring held is spent
+  kept.lost += kept.work - kept.slid;
+  kept.rubbed += kept.slid;
+  kept.work = kept.slid = kept.sprung = 0.0;
+  kept.scale = 1.0;
+  kept.begun = 0.0;
+  kept.drag = {};
+  kept.spring = 0.0;
 }
 
 /// Normal force by potential, both ways; Coulomb friction with one spring a couple that remembers.
@@ -228,20 +322,12 @@ struct CoupleForces {
     if (meeting) {
       of_a.exposed = exposed[a[i]];
       of_b.exposed = exposed[b[i]];
-      const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
+      const ContactPair& law = law_of(i);
       if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, of_a, of_b);
       press(law.penalty * kept.scale, of_a, of_b, holds, sum);
-      // Neighbours at a vertex become a couple some steps after a joint there has softened, or
-      // have overlapped by joined faces before an exposed one reached in: by more than the last
-      // step can have brought.
-      if (!holds && kept.work == 0.0) {
-        if (is_new)
-          kept.begun = sum.energy;
-        else if (sum.joined > 0.0)
-          kept.begun = max(0.0, sum.energy - sum.taken_in(dt, va, vb));
-      }
+      if (!holds && kept.work == 0.0) note_begun(is_new, sum.taken_in(dt, va, vb), kept, sum);
       sum.take_off(kept.begun);
-      if (sum.touches()) rub(law, of_a.target, va, of_b.target, vb, kept, sum);
+      if (sum.rubs(law)) rub(law, of_a.target, va, of_b.target, vb, kept, sum);
     }
     if (!sum.touches() && resting) return;
     const CoupleForce last = force[i];
@@ -250,19 +336,31 @@ struct CoupleForces {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.force.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.force.on_b.at[k], vb[k]);
     }
-    if (sum.touches()) {
-      // Not even one that has taken up nothing rests: its forces must end.
-      if (kept.work == 0.0 && kept.slid == 0.0) kept.work = 1e-300;
-      return;
-    }
-    kept.slid += kept.sprung;  // what the spring held is spent
-    kept.lost += kept.work - kept.slid;
-    kept.rubbed += kept.slid;
-    kept.work = kept.slid = kept.sprung = 0.0;
-    kept.scale = 1.0;
-    kept.begun = 0.0;
-    kept.drag = {};
-    kept.spring = 0.0;
+    end_step(sum.touches(), kept);
+  }
+  /// Whether a couple that is busy has anything to evaluate: others rest apart, though their boxes
+  /// are not.
+  BR_HD bool is_due(Index i) const {
+    const CoupleState& kept = state[i];
+    if (kept.scale == 0.0 || kept.work != 0.0 || kept.slid != 0.0) return true;
+    Partner of_a, of_b;
+    places(nodes[a[i]], of_a.x);
+    places(nodes[b[i]], of_b.x);
+    return meet(of_a, of_b);
+  }
+  /// A new couple that meets takes over what the joint between them has left.
+  BR_HD void begin(Index i) const {
+    state[i].scale = 1.0;
+    Partner of_a, of_b;
+    places(nodes[a[i]], of_a.x);
+    places(nodes[b[i]], of_b.x);
+    meet(of_a, of_b);
+    of_a.exposed = exposed[a[i]];
+    of_b.exposed = exposed[b[i]];
+    inherit(parent_joint[i], law_of(i), state[i], of_a, of_b);
+  }
+  BR_HD const ContactPair& law_of(Index i) const {
+    return laws[material[a[i]] * materials + material[b[i]]];
   }
 
   /// Normal force on a if their corners lay there.  [N]
@@ -278,9 +376,8 @@ struct CoupleForces {
     of_b.exposed = exposed[b[i]];
     const CoupleState& kept = state[i];
     Pressing sum;
-    press((kept.scale == 0.0 ? 1.0 : kept.scale) *
-              laws[material[a[i]] * materials + material[b[i]]].penalty,
-          of_a, of_b, kept.work != 0.0 || kept.slid != 0.0, sum);
+    press((kept.scale == 0.0 ? 1.0 : kept.scale) * law_of(i).penalty, of_a, of_b,
+          kept.work != 0.0 || kept.slid != 0.0, sum);
     sum.take_off(kept.begun);
     return sum.on_a;
   }
@@ -319,31 +416,13 @@ struct CoupleForces {
   /// Coulomb friction at the centre of pressure, shared among the corners by its coordinates.
   BR_HD void rub(const ContactPair& law, const Target& of_a, const Vec3 (&va)[4],
                  const Target& of_b, const Vec3 (&vb)[4], CoupleState& kept, Pressing& sum) const {
-    const double size = norm(sum.on_a), stiffness = law.tangential * 0.5 * sum.area;
-    if (!(law.friction > 0.0) || !(size > 0.0) || !(stiffness > 0.0)) return;
-    const Vec3 n = (1.0 / size) * sum.on_a, centre = (1.0 / sum.weight) * sum.centre;
+    const Vec3 centre = sum.middle();
     double share_a[4], share_b[4];
     of_a.coordinates(centre, share_a);
     of_b.coordinates(centre, share_b);
     Vec3 rate{};  // of a against b
     for (int k = 0; k < 4; ++k) rate += share_a[k] * va[k] - share_b[k] * vb[k];
-    rate -= dot(rate, n) * n;
-    // Turned with the plane of contact, its length kept.
-    Vec3 before = kept.drag - dot(kept.drag, n) * n;
-    const double left = norm(before), had = norm(kept.drag);
-    const double most = law.friction * size;
-    // The spring keeps, as the area changes, its energy T^2/(2 k).
-    const double stiffer = kept.spring > 0.0 ? sqrt(stiffness / kept.spring) : 1.0;
-    if (left > 0.0) before = (stiffer * had / left) * before;
-    kept.spring = stiffness;
-    Vec3 pull = before - (stiffness * dt) * rate;
-    const double tried = norm(pull);
-    if (tried > most) pull = (most / tried) * pull;
-    const double taken = -0.5 * dt * dot(before + pull, rate);
-    fdem::FrictionWork friction_work;
-    friction_work.add(taken, 0.5 * dot(pull, pull) / stiffness);
-    friction_work.book(kept.slid, kept.sprung);
-    kept.drag = pull;
+    const Vec3 pull = pull_of(law, dt, rate, sum, kept);
     for (int k = 0; k < 4; ++k) {
       sum.force.on_a.at[k] += share_a[k] * pull;
       sum.force.on_b.at[k] -= share_b[k] * pull;

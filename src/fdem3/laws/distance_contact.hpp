@@ -257,15 +257,25 @@ struct Inside {
     radius = 1.0 / sum;
     incentre = radius * weighted;
   }
-  /// A face of the other one that is partly in the target.
-  BR_HD void add_other(const FaceOverlap& o, const Vec3 (&face)[3]) {
+  /// Of a face of the other one that is partly in the target: what add_other() adds.
+  struct FaceShare {
+    double volume_sum[4], area, face_sum;
+  };
+  BR_HD FaceShare share_of(const FaceOverlap& o, const Vec3 (&face)[3]) const {
+    FaceShare share;
     const Vec3 twice = cross(face[1] - face[0], face[2] - face[0]);
     const double height = dot(face[0] - incentre, twice);  // times twice the area
     for (int k = 0; k < 4; ++k)
-      volume_sum[k] += height * (radius / 12.0 * o.region_area[k] + 0.25 * o.region_sum[k]);
+      share.volume_sum[k] = height * (radius / 12.0 * o.region_area[k] + 0.25 * o.region_sum[k]);
     const double size = norm(twice);
-    area += size * o.area;
-    face_sum += size * (o.moment[0] + o.moment[1] + o.moment[2]);
+    share.area = size * o.area;
+    share.face_sum = size * (o.moment[0] + o.moment[1] + o.moment[2]);
+    return share;
+  }
+  BR_HD void add_other(const FaceShare& share) {
+    for (int k = 0; k < 4; ++k) volume_sum[k] += share.volume_sum[k];
+    area += share.area;
+    face_sum += share.face_sum;
   }
   /// Whether the integrals are more than rounding: they are small differences where the overlap is
   /// shallow. Forces of shape are to those of `push` as its depth to the inradius.

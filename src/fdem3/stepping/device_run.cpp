@@ -11,17 +11,18 @@
 #include "fdem3/shape.hpp"
 #include "fdem3/stepping/launches.hpp"
 #include "fdem3/stepping/step.hpp"
+#include "fdem3/stepping/wide_kernels.hpp"
 
 namespace breccia::fdem3 {
 namespace {
 
 using fdem_shared::Bounded;
-using fdem_shared::BusyInTurn;
+using fdem_shared::BusyWhereDue;
 using fdem_shared::emptying;
 using fdem_shared::ListBusy;
 
-/// Threads that share the list of busy couples out.
-constexpr Index most_threads = 132 * 512;
+/// Groups of threads that share the list of busy couples out: as many as run at a time, and more.
+constexpr Index most_groups = 132 * 64;
 
 }  // namespace
 
@@ -60,9 +61,10 @@ struct Launches {
     const CoupleForces all = couple_kernel(w);
     const View<Index> busy = w.busy.couple.view(), count = w.busy.count.view();
     for_each_part(w.exec, part(couples, by(ListBusy<CoupleForces>{all, busy, count}), Parts<>{}));
-    const Index threads = std::min(couples, most_threads);
-    for_each_part(
-        w.exec, part(threads, by(BusyInTurn<CoupleForces>{all, busy, count, threads}), Parts<>{}));
+    const Index groups = std::min(couples, most_groups);
+    for_each_part(w.exec,
+                  part(groups * CouplesWide::width,
+                       by(BusyWhereDue<CouplesWide>{{all}, busy, count, groups}), Parts<>{}));
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {

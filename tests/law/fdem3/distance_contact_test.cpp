@@ -42,7 +42,7 @@ Pair forces_of(const Body& a, const Body& b, bool with_shape = false) {
       FaceOverlap o;
       if (!overlap_of_face(face, target, o)) continue;
       ++sum.hits;
-      inside.add_other(o, face);
+      inside.add_other(inside.share_of(o, face));
       mine.add_own(f, o.area * norm(cross(face[1] - face[0], face[2] - face[0])));
       push(o, face, 1.0, on_face, on_target);
       for (int k = 0; k < 3; ++k) on_own[corner_of_face(f, k)] += on_face[k];

@@ -164,6 +164,22 @@ TEST(Findings, ARunWithoutFramesStillHasItsNumbers) {
   EXPECT_NE(text.find("1 of 7 links broke"), std::string::npos) << text;
 }
 
+TEST(Findings, CracksOfSpheresTellWhatSlipAndFrictionTookBesides) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  const std::string path = folder.path() + "/summary.json";
+  std::string summary = read_whole_file(path);
+  const std::string fracture = "\"energy\": {\"fracture\": 1.5";
+  const std::size_t at = summary.find(fracture);
+  ASSERT_NE(at, std::string::npos);
+  summary.insert(at + fracture.size(), ", \"plastic\": 2.1, \"friction\": 12.6");
+  test::write_text(path, summary);
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("took 1.5 J in cracks besides 2.1 J of plastic slip and 12.6 J of friction"),
+            std::string::npos)
+      << text;
+}
+
 TEST(Findings, CracksOfAPlaneTellTheirMode) {
   const ScratchFolder folder;
   test::write_text(folder / "summary.json", R"({"case": {"name": "disc"}, "model": {"joints": 50},
