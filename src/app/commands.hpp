@@ -24,6 +24,7 @@ void add_new(CLI::App& program);
 void add_demo(CLI::App& program, int& exit_code);
 void add_doctor(CLI::App& program);
 void add_info(CLI::App& program);
+void add_compare(CLI::App& program);
 void add_mesh(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_render(CLI::App& program);

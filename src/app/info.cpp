@@ -102,7 +102,8 @@ void tell(const char* head, const std::string& text) {
 void describe_folder(const std::string& path) {
   const std::string summary = path + "/summary.json";
   if (!fs::exists(summary))
-    throw InputError(path + ": this folder holds no run (there is no summary.json)");
+    throw InputError(path + ": this folder holds no run (there is no summary.json)" +
+                     (fs::exists(path + "/sweep.csv") ? "; of a sweep read sweep.md" : ""));
   const Told told(summary);
   print_harmless("{}: {}{}\n", path, told.text("/status"),
                  told.text("/message").empty() ? "" : ", " + told.text("/message"));

@@ -107,6 +107,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   breccia::app::add_demo(program, exit_code);
   breccia::app::add_doctor(program);
   breccia::app::add_info(program);
+  breccia::app::add_compare(program);
   breccia::app::add_mesh(program);
   breccia::app::add_convert(program);
   breccia::app::add_render(program);

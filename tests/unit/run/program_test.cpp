@@ -321,6 +321,26 @@ TEST_F(Program, WritesNoCarriageReturnIntoAFile) {
   EXPECT_EQ(output(), "");
 }
 
+TEST_F(Program, ComparesRunsSideBySide) {
+  const std::string balls = "run " + path("balls.toml") + " -o ";
+  ASSERT_EQ(run(balls + path("a")), 0) << output();
+  ASSERT_EQ(run(balls + path("b") + " --threads 2"), 0) << output();
+  ASSERT_EQ(run(balls + path("c") + " --set seed=2 --steps 3"), 0) << output();
+  EXPECT_EQ(run("compare " + path("a") + " " + path("b")), 0) << output();
+  EXPECT_NE(output().find("b over a\nsteps "), std::string::npos) << output();
+  EXPECT_NE(output().find("alike\n"), std::string::npos) << output();
+  EXPECT_NE(output().find("states alike to the bit ("), std::string::npos) << output();
+  EXPECT_EQ(run("compare " + path("a") + " " + path("c") + " --measure energy.kinetic"), 0)
+      << output();
+  EXPECT_NE(output().find("\nenergy.kinetic "), std::string::npos) << output();
+  EXPECT_NE(output().find("states differ\n"), std::string::npos) << output();
+  EXPECT_EQ(run("compare " + path("a") + " " + path("c") + " --measure energy.kinetik"), 2);
+  EXPECT_NE(output().find("energy.kinetic"), std::string::npos) << output();
+  EXPECT_EQ(run("compare " + path("a") + " " + path("nothing")), 2);
+  EXPECT_NE(output().find("holds no run"), std::string::npos) << output();
+  EXPECT_NE(run("compare " + path("a")), 0);
+}
+
 TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
   EXPECT_EQ(run("info " + path("out")), 0) << output();
