@@ -19,9 +19,13 @@ double largest_of(const EnergyBalance& energy) {
 /// much is that.  [J]
 constexpr double judged_from = 1e-14;
 
-/// The missing energy of a row over the largest energy or work so far; 0 of a body at rest.
-double judged(const EnergyBalance& energy) {
-  return largest_of(energy) < judged_from ? 0.0 : energy.error_relative;
+/// The missing energy of a row over the largest energy or work so far; 0 of a body at rest, and of
+/// less than one step moves in the mean: velocities and works lie half a step from positions, so
+/// that much of a load that has just begun is not known.
+double judged(const EnergyBalance& energy, std::int64_t step) {
+  const double of_one_step = 1.0 / static_cast<double>(std::max<std::int64_t>(step, 1));
+  const bool unknown = largest_of(energy) < judged_from || energy.error_relative <= of_one_step;
+  return unknown ? 0.0 : energy.error_relative;
 }
 
 std::string moment(std::int64_t step, double time) {
@@ -56,7 +60,7 @@ void require_numbers(const EnergyBalance& energy) {
 bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double time) {
   require_numbers(energy);
   const auto count = [&](double limit, std::int64_t& rows) {
-    rows = limit > 0.0 && judged(energy) > limit ? rows + 1 : 0;
+    rows = limit > 0.0 && judged(energy, step) > limit ? rows + 1 : 0;
     return rows;
   };
   if (count(limits_.stop, rows_.above_stop) >= patience) refuse(energy, limits_.stop, step, time);
@@ -80,8 +84,9 @@ bool EnergyWatch::contacts_gave(const EnergyBalance& energy) {
 }
 
 bool EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {
-  if (limits_.stop > 0.0 && judged(energy) > limits_.stop) refuse(energy, limits_.stop, step, time);
-  return limits_.warn > 0.0 && judged(energy) > limits_.warn && rows_.above_warn < patience;
+  if (limits_.stop > 0.0 && judged(energy, step) > limits_.stop)
+    refuse(energy, limits_.stop, step, time);
+  return limits_.warn > 0.0 && judged(energy, step) > limits_.warn && rows_.above_warn < patience;
 }
 
 }  // namespace breccia

@@ -16,7 +16,8 @@ namespace breccia {
 /// the case, does not. Rows that call for a warning are counted anew when the largest energy has
 /// doubled: what is missing of the energies at the start of a load is little of those that follow.
 /// The limit that ends a run counts all rows. Energies below 1e-14 J, a body at rest, are not
-/// judged.
+/// judged; nor is less than the mean of what a step has moved, the largest energy over the number
+/// of steps: after n steps that is a share of 1/n, and of no weight beyond 1/stop and 1/warn steps.
 class EnergyWatch {
  public:
   static constexpr std::int64_t patience = 25;  ///< rows
