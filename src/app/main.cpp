@@ -56,17 +56,50 @@ struct FoldedHelp : CLI::Formatter {
   }
 };
 
+/// What is wrong with arguments that a command does not take, in the order in which they stand.
+std::string text_of_extras(const CLI::App& command) {
+  std::set<std::string> options;
+  std::string takes;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.insert("--" + name);
+    if (option->get_positional()) takes += option->get_single_name() + " and ";
+  }
+  std::string text, words;
+  bool behind_option = false;
+  for (const std::string& argument : command.remaining()) {
+    const bool is_option = argument.starts_with('-') && argument.size() > 1;
+    if (is_option)
+      text += fmt::format("{}{} is not an option of {}{}", text.empty() ? "" : "\n", argument,
+                          command.get_name(), breccia::suggestion(argument, options));
+    else if (!behind_option)  // or it may be the value of one that is misspelt
+      words += (words.empty() ? "" : " ") + argument;
+    behind_option = is_option;
+  }
+  if (words.empty()) return text;
+  return fmt::format(
+      "{}{}{}: not expected; {} takes {}options, and what belongs to an option is one word behind "
+      "it",
+      text, text.empty() ? "" : "\n", words, command.get_name(), takes);
+}
+
 /// Tells of a wrong command line; a first word that is no command is named.
 void tell_usage(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "-";
-  std::set<std::string> commands;
-  for (const CLI::App* command : program.get_subcommands({})) commands.insert(command->get_name());
-  if (error.get_exit_code() == 0 || first.starts_with('-') || commands.contains(first)) {
+  if (error.get_exit_code() == 0) {  // help
     program.exit(error);
     return;
   }
-  write_error(fmt::format("{} is not a command{}\nRun with --help for more information.", first,
-                          breccia::suggestion(first, commands)));
+  const std::string first = argc > 1 ? argv[1] : "-";
+  std::set<std::string> commands;
+  for (const CLI::App* command : program.get_subcommands({})) commands.insert(command->get_name());
+  const std::vector<CLI::App*> called = program.get_subcommands();
+  std::string text = error.what();
+  if (!called.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
+    text = text_of_extras(*called.front());
+  else if (!called.empty())
+    text = called.front()->get_name() + ": " + text;
+  else if (!first.starts_with('-'))
+    text = fmt::format("{} is not a command{}", first, breccia::suggestion(first, commands));
+  write_error(text + "\nRun with --help for more information.");
 }
 
 int tell_and_end(breccia::Communicator& ranks, int exit_code, const std::string& message) {

@@ -157,6 +157,25 @@ TEST_F(Program, ChecksTheFilesThatACaseNames) {
   EXPECT_EQ(run("check " + path("file.toml")), 0) << output();
 }
 
+TEST_F(Program, TellsOfArgumentsThatACommandDoesNotTakeInTheirOrder) {
+  EXPECT_EQ(run("run case.toml --treads 1 --quit"), 2);
+  EXPECT_NE(output().find("error: --treads is not an option of run; did you mean --threads?\n"),
+            std::string::npos)
+      << output();
+  EXPECT_NE(output().find("--quit is not an option of run; did you mean --quiet?"),
+            std::string::npos)
+      << output();
+  EXPECT_EQ(run("sweep case.toml --over material.rock.friction 0.3 0.9"), 2);
+  EXPECT_NE(output().find("error: 0.3 0.9: not expected; sweep takes CASE and options, and what "
+                          "belongs to an option is one word behind it"),
+            std::string::npos)
+      << output();
+  EXPECT_EQ(run("run"), 2);
+  EXPECT_NE(output().find("error: run: CASE is required"), std::string::npos) << output();
+  EXPECT_EQ(run("run case.toml --threads x"), 2);
+  EXPECT_NE(output().find("error: run: --threads"), std::string::npos) << output();
+}
+
 TEST_F(Program, EndsWithFourWhereEnergyIsMissingAndSoDoesItsResume) {
   replace_file(path("balls.toml"), two_balls);
   EXPECT_EQ(run("run " + path("balls.toml") + " -o " + path("out") +
