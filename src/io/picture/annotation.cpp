@@ -200,7 +200,8 @@ void draw_scale_bar(Paper& paper, double resolution, int scale) {
   const double length = round_step_below(0.22 * paper.width / resolution);
   const int left = border * scale, bottom = paper.height - border * scale;
   const int right = left + static_cast<int>(length * resolution + 0.5);
-  paper.veil(left, bottom - (font_height + 5) * scale, right, bottom, scale);
+  // No higher than the number: marks on the lower border of bodies end just above it.
+  paper.veil(left, bottom - (font_height + 1) * scale, right, bottom, scale);
   paper.fill(left, bottom - scale, right, bottom, ink);
   paper.fill(left, bottom - 4 * scale, left + scale, bottom, ink);
   paper.fill(right - scale, bottom - 4 * scale, right, bottom, ink);
