@@ -25,6 +25,7 @@
 #include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/checks/check_tools.hpp"
+#include "prepare/checks/check_values.hpp"
 #include "run/case.hpp"
 #include "run/case_keys.hpp"
 #include "run/machine/forecast.hpp"
@@ -189,6 +190,7 @@ struct CheckCommand {
       for (const std::string& doubt : prepare::doubtful_bodies(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_tools(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_tools(config, read.folder)) tell(doubt);
+    for (const std::string& doubt : prepare::doubtful_values(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::merged_lines(config, read.folder); })
       for (const std::string& note : prepare::merged_lines(config, read.folder)) tell(note);
   }
@@ -316,18 +318,48 @@ struct CheckCommand {
     for (const Fact& fact : method->facts()) {
       if (fact.path.starts_with("model.added_mass."))
         fmt::print("  {} {:.4g}\n", fact.path.substr(6), fact.value);
-      if (fact.path.starts_with("model.rock.")) tell_of_rock(fact);
+      if (fact.path.starts_with("model.rock.")) tell_of_rock(fact, read);
     }
     tell_warnings(*method, read);
   }
+  /// The modulus that the case gives a material of triangles or tetrahedra; 0: none.  [Pa]
+  static double given_young(const Case& read, const std::string& material) {
+    const auto among = [&](const auto& materials) {
+      for (const auto& m : materials)
+        if (m.name == material) return m.young;
+      return 0.0;
+    };
+    return std::visit(
+        [&](const auto& config) {
+          if constexpr (requires { config.tetrahedra; })
+            return among(config.tetrahedra.materials);
+          else
+            return among(config.materials);
+        },
+        read.config);
+  }
+
+  /// By how much joints soften a specimen, and the `young` at which it has the modulus given: both
+  /// grow alike, as the stiffness of joints is given over `young`.
+  static std::string softened(double young, double given) {
+    if (!(given > 0.0) || !(young < 0.9995 * given)) return "";
+    return fmt::format(
+        ", {:.1f} % softer than its young of {:.4g} GPa: a specimen shows that; young = \"{:.4g} "
+        "GPa\" gives {:.4g} GPa",
+        100.0 * (1.0 - young / given), 1e-9 * given, 1e-9 * given * given / young, 1e-9 * given);
+  }
+
   /// One number of a material as its joints soften it, model.rock.<material>.<word>.
-  static void tell_of_rock(const Fact& fact) {
+  static void tell_of_rock(const Fact& fact, const Case& read) {
     const std::size_t cut = fact.path.rfind('.');
     const std::string whose = fact.path.substr(std::string("model.rock.").size(),
                                                cut - std::string("model.rock.").size()),
                       word = fact.path.substr(cut + 1);
     if (word == "young")
-      fmt::print("  {} with its joints: E {:.4g} GPa\n", harmless(whose), 1e-9 * fact.value);
+      fmt::print("{}", fitting(fmt::format("  {} with its joints: E {:.4g} GPa{}\n",
+                                           harmless(whose), 1e-9 * fact.value,
+                                           softened(fact.value, given_young(read, whose))),
+                               4, stdout));
     else if (word == "poisson")
       fmt::print("  {} with its joints: nu {:.4g}\n", harmless(whose), fact.value);
     else if (word.ends_with("wave_speed"))

@@ -5,6 +5,7 @@
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
+#include "prepare/checks/check_values.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/model_file.hpp"
 
@@ -116,6 +117,18 @@ std::vector<std::string> prepare::doubtful_in_situ(const coupled::Config& config
   return doubts_of_part(config, "tetrahedra", [&](const coupled::Parts& parts) {
     return doubtful_in_situ(parts.tetrahedra, folder);
   });
+}
+
+std::vector<std::string> prepare::doubtful_values(const coupled::Config& config,
+                                                  const std::string& folder) {
+  std::vector<std::string> doubts = doubts_of_part(
+      config, "spheres",
+      [&](const coupled::Parts& parts) { return doubtful_values(parts.spheres, folder); });
+  for (std::string& doubt : doubts_of_part(config, "tetrahedra", [&](const coupled::Parts& parts) {
+         return doubtful_values(parts.tetrahedra, folder);
+       }))
+    doubts.push_back(std::move(doubt));
+  return doubts;
 }
 
 }  // namespace breccia

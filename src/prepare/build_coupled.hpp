@@ -32,10 +32,11 @@ void check_regions(const coupled::Config& config, const std::string* folder = nu
 void check_files(const coupled::Config& config, const std::string& case_folder);
 
 /// Doubts of the parts, with their names: of walls (check_regions.hpp), loads, and stress at the
-/// start (check_in_situ.hpp).
+/// start (check_in_situ.hpp), and values (check_values.hpp).
 std::vector<std::string> doubtful_walls(const coupled::Config& config, const std::string& folder);
 std::vector<std::string> doubtful_loads(const coupled::Config& config, const std::string& folder);
 std::vector<std::string> doubtful_in_situ(const coupled::Config& config, const std::string& folder);
+std::vector<std::string> doubtful_values(const coupled::Config& config, const std::string& folder);
 
 }  // namespace prepare
 }  // namespace breccia

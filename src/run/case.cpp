@@ -20,6 +20,7 @@
 #include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/checks/check_stages.hpp"
+#include "prepare/checks/check_values.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/model_file.hpp"
 #include "run/case_keys.hpp"
@@ -408,6 +409,7 @@ RunPlan plan_of(const Case& read) {
           warn(prepare::doubtful_probes(config, read.folder));
         if constexpr (requires { prepare::doubtful_in_situ(config, read.folder); })
           warn(prepare::doubtful_in_situ(config, read.folder));
+        warn(prepare::doubtful_values(config, read.folder));
       },
       read.config);
   plan.prepared = read.prepared;

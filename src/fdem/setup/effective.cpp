@@ -99,7 +99,9 @@ std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMe
       rocks.push_back(std::move(rock));
       continue;
     }
-    double pressing = laws[m].lambda + 2.0 * laws[m].shear, shear = laws[m].shear;
+    // As the material is, whatever modulus the first stage gives it.
+    const double stage = material.young_now > 0.0 ? material.young / material.young_now : 1.0;
+    double pressing = stage * (laws[m].lambda + 2.0 * laws[m].shear), shear = stage * laws[m].shear;
     if (rock.compliance > 0.0) {
       // In the plane: 1/E' and (1 + nu')/E' grow by it, nu'/E' stays.
       const double nu = material.poisson;

@@ -14,6 +14,7 @@
 #include "fdem/setup/check_case.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
+#include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/body.hpp"
 #include "prepare/meshing/joint_sets.hpp"
@@ -245,6 +246,7 @@ void check_case(const Config& config) {
        {prepare::body_problems(config.bodies, config.discontinuities, names_of(config)),
         prepare::overlap_problems(config.bodies)})
     problems.insert(problems.end(), more.begin(), more.end());
+  for (const std::string& problem : prepare::soft_problems(config)) problems.push_back(problem);
   for (const JointSetConfig& set : config.joint_sets)
     for (const std::string& problem : prepare::joint_set_problems(set, names_of(config).joints))
       problems.push_back(problem);
@@ -259,6 +261,7 @@ namespace fdem3 {
 
 void check_case(const Config& config) {
   std::vector<std::string> problems = prepare::case_problems(config);
+  for (const std::string& problem : prepare::soft_problems(config)) problems.push_back(problem);
   check_mass_scaling(config, problems);
   check_added_mass(config, problems);
   prepare::refuse(problems, "in the case");

@@ -6,40 +6,17 @@
 #include <cmath>
 
 #include "io/round_numbers.hpp"
+#include "prepare/checks/in_situ.hpp"
 #include "prepare/checks/outlines.hpp"
+#include "prepare/checks/round_borders.hpp"
 
 namespace breccia::prepare {
 namespace {
 
-std::string stress_text(double stress) {
-  const ScaledUnit scaled = scaled_unit("Pa", std::abs(stress));
-  return fmt::format("{:.4g} {}", scaled.factor * stress, scaled.unit);
-}
 std::string place_text(double x) {
   return x < 0.0 ? "-" + length_text(-x) : x > 0.0 ? length_text(x) : "0 m";
 }
 constexpr const char* axis_words[] = {"x", "y", "z"};
-
-/// Normal stress across an axis.  [Pa]
-double across(const fdem::InSituConfig& in_situ, const Vec3& x, std::size_t axis) {
-  const Sym2 s = in_situ.at({x.x, x.y});
-  return axis == 0 ? s.xx : s.yy;
-}
-double across(const fdem3::InSituConfig& in_situ, const Vec3& x, std::size_t axis) {
-  const Sym3 s = in_situ.at(x);
-  return axis == 0 ? s.xx : axis == 1 ? s.yy : s.zz;
-}
-
-/// The key that says most of the stress across an axis.
-std::string key_across(const fdem::InSituConfig& s, std::size_t axis) {
-  const double value = axis == 0 ? s.xx : s.yy;
-  return std::string("in_situ.") + (axis == 0 ? "xx" : "yy") + (value == 0.0 ? "_slope" : "");
-}
-std::string key_across(const fdem3::InSituConfig& s, std::size_t axis) {
-  const double value = axis == 0 ? s.xx : axis == 1 ? s.yy : s.zz;
-  const char* const words[] = {"xx", "yy", "zz"};
-  return std::string("in_situ.") + words[axis] + (value == 0.0 ? "_slope" : "");
-}
 
 /// Whether a region reaches a point of a body.
 template <class Region>
@@ -54,20 +31,6 @@ bool reaches(const Region& region, const Vec3& x, const std::string& body,
   for (std::size_t k = 0; k < 3; ++k)
     if (at[k] < b.low[k] - slack || at[k] > b.high[k] + slack) return false;
   return true;
-}
-
-/// Size of a pressure at the start.  [Pa]
-template <class Load>
-double first_pressure(const Load& load) {
-  if (load.history.ramp > 0.0) return 0.0;
-  double factor = 1.0;
-  if (const auto& times = load.history.times; !times.empty()) {
-    OverTime<double> table;
-    table.times = times;
-    table.values = load.history.factors;
-    factor = table.at(0.0);
-  }
-  return factor * load.pressure.at(0.0);
 }
 
 template <class Config>
@@ -105,7 +68,7 @@ class Borders {
         fdem_shared::part_of(x, static_cast<int>(k)) =
             (corner >> k & 1) != 0 ? box_.high[k] : box_.low[k];
       for (std::size_t k = 0; k < axes; ++k) {
-        const double s = across(config_.in_situ, x, k);
+        const double s = stress_across(config_.in_situ, x, k);
         largest_ = std::max(largest_, std::abs(s));
         pull_[k] = std::max(pull_[k], s);
       }
@@ -161,7 +124,7 @@ class Borders {
     const Outline* const body = body_at(x, axis, high);
     if (body == nullptr) return;
     ++side.points;
-    const double stress = across(config_.in_situ, x, axis), slack = 1e-6 * size_;
+    const double stress = stress_across(config_.in_situ, x, axis), slack = 1e-6 * size_;
     if (std::abs(stress) <= 1e-3 * largest_) return;
     for (const auto& s : config_.supports) {
       const bool holds = s.is_free() || s.servo.is_on() ||
@@ -248,13 +211,90 @@ class Borders {
   std::vector<std::string> found_;
 };
 
+/// The largest pressure along the axes at a place.  [Pa]
+template <class InSitu>
+double pressure_at(const InSitu& in_situ, const Vec3& x) {
+  constexpr std::size_t axes = std::is_same_v<InSitu, fdem::InSituConfig> ? 2 : 3;
+  double most = 0.0;
+  for (std::size_t k = 0; k < axes; ++k) most = std::max(most, -stress_across(in_situ, x, k));
+  return most;
+}
+
+/// The largest pressure at the start in the middle of each body of a material; graded stress in
+/// bodies whose middle only a file tells is left out.  [Pa]
+template <class Config>
+double pressure_in(const Config& config, const std::string& material) {
+  const std::vector<Outline> outlines = outlines_of(config, nullptr);
+  double most = 0.0;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    if (config.bodies[i].material != material) continue;
+    Vec3 middle = fdem_shared::to_space(config.bodies[i].center);
+    const bool known = outlines[i].bounds || config.bodies[i].shape == "part";
+    if (!known && config.in_situ.graded()) continue;
+    if (const auto& b = outlines[i].bounds; b && config.bodies[i].shape != "part")
+      middle = {0.5 * (b->low[0] + b->high[0]), 0.5 * (b->low[1] + b->high[1]),
+                0.5 * (b->low[2] + b->high[2])};
+    most = std::max(most, pressure_at(config.in_situ, middle));
+  }
+  return most;
+}
+
+/// Under a pressure p that stays while elements deform, those of a shear modulus G < p turn inside
+/// out: p works wherever their sides turn, and G resists that. A core that bears 2.5 MPa (nu =
+/// 0.25) stays at rest with young = 6 MPa, G = 2.4 MPa, and buckles with 5.5 MPa.
+template <class Config>
+std::vector<std::string> too_soft(const Config& config) {
+  std::vector<std::string> problems;
+  if (!config.in_situ.any()) return problems;
+  for (const auto& m : config.materials) {
+    const double pressure = pressure_in(config, m.name);
+    double young = m.young, share = 1.0;
+    const auto look = [&](const std::string& key) {
+      const double needed = 2.0 * (1.0 + m.poisson) * share * pressure;
+      if (young > needed || !(needed > 0.0)) return false;
+      problems.push_back(fmt::format(
+          "{}.young = {} is too soft for the pressure in situ that {} bears, {}: elements whose "
+          "shear modulus young / (2 (1 + poisson)) is not above it turn inside out, "
+          "whatever the step; it needs more than {}, and 20 times the pressure is soft enough for "
+          "a "
+          "core that is dug slowly",
+          key, stress_text(young), m.name, stress_text(share * pressure), stress_text(needed)));
+      return true;
+    };
+    if (look("material." + m.name)) continue;
+    for (const auto& stage : config.stages) {
+      const auto change =
+          std::find_if(stage.materials.begin(), stage.materials.end(),
+                       [&](const auto& of_stage) { return of_stage.name == m.name; });
+      if (change == stage.materials.end()) continue;
+      if (change->young > 0.0) young = change->young;
+      if (change->in_situ >= 0.0) share = change->in_situ;
+      if (look("stage." + stage.name + ".material." + m.name)) break;
+    }
+  }
+  return problems;
+}
+
 }  // namespace
 
+std::vector<std::string> soft_problems(const fdem::Config& config) {
+  return too_soft(config);
+}
+std::vector<std::string> soft_problems(const fdem3::Config& config) {
+  return too_soft(config);
+}
+
 std::vector<std::string> doubtful_in_situ(const fdem::Config& config, const std::string& folder) {
-  return Borders<fdem::Config>(config, folder).doubts();
+  std::vector<std::string> doubts = Borders<fdem::Config>(config, folder).doubts();
+  for (std::string& more : doubtful_round_borders(config, folder))
+    doubts.push_back(std::move(more));
+  return doubts;
 }
 std::vector<std::string> doubtful_in_situ(const fdem3::Config& config, const std::string& folder) {
-  return Borders<fdem3::Config>(config, folder).doubts();
+  std::vector<std::string> doubts = Borders<fdem3::Config>(config, folder).doubts();
+  for (std::string& more : doubtful_round_borders(config, folder))
+    doubts.push_back(std::move(more));
+  return doubts;
 }
 
 }  // namespace breccia::prepare

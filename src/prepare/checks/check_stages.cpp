@@ -15,19 +15,26 @@
 namespace breccia::prepare {
 namespace {
 
-/// Visitor of each_key that finds the tables over time below it, and the items that it names.
+/// Visitor of each_key that finds the tables over time and ramps below it, and the items that it
+/// names.
 struct FindTables {
   struct Table {
     std::string key, item;
     double first;  ///< time of its first row  [s]
   };
   std::vector<Table> tables;
+  std::vector<Table> ramps;     ///< `first`: when it is over  [s]
   std::set<std::string> items;  ///< "support.grip"
   std::string path{}, item{};   ///< of the innermost table, and of the innermost item of a list
 
   template <class Value, class... Rest>
   void operator()(const char* name, OverTime<Value>& value, Rest&&...) {
     if (value.is_table()) tables.push_back({path + name, item, value.times.front()});
+  }
+  template <class... Rest>
+  void operator()(const char* name, double& value, Rest&&...) {
+    if (std::string_view(name) == "ramp" && value > 0.0)
+      ramps.push_back({path + name, item, value});
   }
   template <class... Rest>
   void operator()(const char* name, std::vector<double>& value, Rest&&...) {
@@ -107,8 +114,17 @@ std::vector<std::string> doubts(Config config) {
                       "all the time",
                       table.key, time_text(table.first), time_text(over)));
   };
+  const auto tell_long = [&](const FindTables::Table& ramp, double over) {
+    if (ramp.first > over)
+      told.push_back(
+          fmt::format("{} = {}: it counts for {} at most, so what it leads reaches {:.3g} % of the "
+                      "value given",
+                      ramp.key, time_text(ramp.first), time_text(over), 100.0 * over / ramp.first));
+  };
   for (const FindTables::Table& table : whole.tables)
     tell_late(table, std::min(end, lasts(0, 0, table.item)));
+  for (const FindTables::Table& ramp : whole.ramps)
+    tell_long(ramp, std::min(end, lasts(0, 0, ramp.item)));
   for (std::size_t k = 0; k < stages.size(); ++k) {
     if (begin >= end) {
       told.push_back(fmt::format(
@@ -121,6 +137,9 @@ std::vector<std::string> doubts(Config config) {
       const std::string item = table.item.empty() ? "" : table.item.substr(own);
       tell_late(table, std::min(end - begin, lasts(k, k + 1, item)));
     }
+    for (const FindTables::Table& ramp : found[k].ramps)
+      tell_long(ramp, std::min(end - begin,
+                               lasts(k, k + 1, ramp.item.empty() ? "" : ramp.item.substr(own))));
     begin += least_of(stages[k]);
   }
   return told;

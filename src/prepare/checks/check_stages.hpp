@@ -12,8 +12,9 @@
 
 namespace breccia::prepare {
 
-/// Stages that begin after time.end, by the times that the ones before them take at least, and
-/// tables over time whose first row comes when nothing follows them any more; a sentence each.
+/// Stages that begin after time.end, by the times that the ones before them take at least, tables
+/// over time whose first row comes when nothing follows them any more, and ramps that are longer
+/// than what they lead; a sentence each.
 std::vector<std::string> doubtful_times(const dem::Config& config);
 std::vector<std::string> doubtful_times(const fdem::Config& config);
 std::vector<std::string> doubtful_times(const fdem3::Config& config);

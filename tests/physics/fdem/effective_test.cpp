@@ -27,6 +27,18 @@ Scene bar(double stiffness, const char* plane, double length, double edge) {
   return scene;
 }
 
+/// A modulus that the first stage gives a material without joints does not change what is told of
+/// the material.
+TEST(EffectiveRock, is_that_of_the_material_in_any_stage) {
+  Scene scene = bar(0.0, "strain", 0.04, 0.01);
+  const EffectiveRock given = scene.world().given->rocks[0];
+  scene.config.materials[0].young_now = 1e6;
+  const EffectiveRock now = scene.world().given->rocks[0];
+  EXPECT_EQ(now.young, given.young);
+  EXPECT_NEAR(now.fast, given.fast, 1e-9 * given.fast);
+  EXPECT_NEAR(now.slow, given.slow, 1e-9 * given.slow);
+}
+
 /// Mean velocity along the bar between two places.
 double mean_velocity(const World& w, double from, double to) {
   double sum = 0.0, mass = 0.0;

@@ -158,6 +158,88 @@ mesh_size = "20 mm"
   EXPECT_TRUE(has(told.text, "tetrahedra.in_situ.zz: nothing bears")) << told.text;
 }
 
+/// Values that can be run and are hardly meant: by check and by run, with line and key.
+TEST_F(Doubts, tell_of_values_that_are_hardly_meant) {
+  const std::string slip = R"(breccia = 1
+method = "fdem2d"
+[time]
+end = "1 ms"
+[output]
+frames = 0
+[material.stone]
+density = 2.6
+[material.stone.joint]
+tension = "60 MPa"
+cohesion = "20 MPa"
+[[body]]
+name = "rock"
+shape = "plate"
+structured = true
+material = "stone"
+size = ["30 mm", "60 mm"]
+mesh_size = "90 mm"
+[[support]]
+name = "foot"
+max = ["1 m", "-29 mm"]
+[[load]]
+name = "top"
+min = ["-1 m", "29 mm"]
+pressure = "1 MPa"
+ramp = "10 ms"
+)";
+  for (const Told& told : {told_by("check", slip), run(slip)}) {
+    EXPECT_EQ(told.exit_code, 0) << told.text;
+    EXPECT_TRUE(has(told.text,
+                    "line 8, material.stone.density = 2.6 kg/m3 is lighter than any "
+                    "rock or concrete; did you mean \"2.6 g/cm3\"?"))
+        << told.text;
+    EXPECT_TRUE(has(told.text, "line 10, material.stone.joint.tension = 60 MPa is never reached"))
+        << told.text;
+    EXPECT_TRUE(has(told.text,
+                    "line 18, body.rock.mesh_size = 90 mm is longer than the shortest "
+                    "side of rock, 30 mm"))
+        << told.text;
+    EXPECT_TRUE(has(told.text, "line 26, load.top.ramp = 10 ms: it counts for 1 ms at most"))
+        << told.text;
+  }
+}
+
+TEST_F(Doubts, tell_of_bodies_in_another_unit) {
+  const std::string far =
+      "[[body]]\nname = \"ball\"\nshape = \"element\"\nmaterial = \"c\"\nradius = \"5 "
+      "mm\"\ncenter = [0.0, 0.0, 55.0]\n";
+  for (const Told& told : {told_by("check", packed + far), run(packed + far)}) {
+    EXPECT_EQ(told.exit_code, 0) << told.text;
+    EXPECT_TRUE(has(told.text, "line 20, body.ball.center: it lies 54.95 m from block"))
+        << told.text;
+  }
+}
+
+TEST_F(Doubts, refuse_what_turns_inside_out) {
+  std::string soft = rock +
+                     "[[stage]]\nname = \"relax\"\nuntil = \"1 ms\"\n"
+                     "[[stage.material]]\nname = \"stone\"\nyoung = \"1 MPa\"\n";
+  soft.replace(soft.find("-5 MPa\""), 7, "-5 MPa\"\nyy = \"-5 MPa\"");
+  for (const Told& told : {told_by("check", soft), run(soft)}) {
+    EXPECT_EQ(told.exit_code, 2) << told.text;
+    EXPECT_TRUE(has(told.text,
+                    "line 27, stage.relax.material.stone.young = 1 MPa is too soft for "
+                    "the pressure in situ that stone bears, 5 MPa"))
+        << told.text;
+  }
+}
+
+/// By how much joints soften a specimen, and what to give instead.
+TEST_F(Doubts, tell_the_modulus_of_a_specimen) {
+  const Told told = told_by("check --model", rock);
+  EXPECT_TRUE(has(told.text, "stone with its joints: E 27.")) << told.text;
+  EXPECT_TRUE(has(told.text,
+                  " % softer than its young of 30 GPa: a specimen shows that; young = "
+                  "\"32."))
+      << told.text;
+  EXPECT_TRUE(has(told.text, " GPa\" gives 30 GPa")) << told.text;
+}
+
 /// A ball in the middle of a block, on it, and tied to it.
 TEST_F(Doubts, tell_of_spheres_that_begin_inside_of_tetrahedra) {
   const auto at = [&](const std::string& z, const std::string& more = "") {

@@ -68,10 +68,11 @@ time.end = "1 us"
 [output]
 frames = 0
 [in_situ]
-xx = -1e15
-yy = -1e15
+xx = 1e15
+yy = 1e15
 [material.rock]
 young = 1.0
+joints = "none"
 [[body]]
 name = "plate"
 material = "rock"
