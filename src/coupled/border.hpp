@@ -1,7 +1,8 @@
 #pragma once
 // Forces between spheres and tetrahedra on ranks (docs/theory-coupled.md, 4): every rank holds
-// the lists of near faces, touches and bonds, and copies of all spheres and tetrahedra that these
-// lead to. All ranks evaluate all of it, with equal bits; each adds up for its own items.
+// the lists of near faces, touches and bonds of all. In a step it evaluates those of its own
+// spheres, and of others that its own tetrahedra meet: two ranks do so with equal bits, and each
+// adds up for its own items. Searches and files need all states: see tell_states().
 
 #include "coupled/bonds.hpp"
 #include "domain/halo.hpp"
@@ -28,9 +29,12 @@ struct BorderSolid {
 /// Copies of the items of the border, one for each row of World::rows and World::around. Empty on
 /// one rank, which reads its worlds.
 struct Border {
-  Halo of_spheres, of_solids;         ///< other ranks' items, by row
-  Buffer<BorderSphere> sphere_items;  ///< as sent
-  Buffer<BorderSolid> solid_items;    ///< as sent
+  Halo of_spheres, of_solids;                  ///< other ranks' items, by row: all of them
+  Halo near_spheres, near_solids;              ///< those that this rank evaluates
+  std::vector<int> sphere_owner, solid_owner;  ///< ranks of the rows
+  Buffer<Index> rows, touches, bonds, solids;  ///< evaluated here; `solids`: rows of World::around
+  Buffer<BorderSphere> sphere_items;           ///< as sent
+  Buffer<BorderSolid> solid_items;             ///< as sent
   Buffer<Index> sphere_here;          ///< place in this rank's world, -1: another one owns it
   Buffer<Index> solid_here;           ///< likewise
   Buffer<dem::ElementState> spheres;  ///< now
@@ -48,8 +52,8 @@ struct Border {
   template <class Visit>
   void each_array(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(sphere_items, solid_items, sphere_here, solid_here, spheres, orientation, sphere_material,
-         fixed, nodes, material, body, exposed, tie, face);
+    each(rows, touches, bonds, solids, sphere_items, solid_items, sphere_here, solid_here, spheres,
+         orientation, sphere_material, fixed, nodes, material, body, exposed, tie, face);
   }
 };
 
@@ -70,11 +74,32 @@ struct Meeting {
 };
 Meeting meeting(const World& w);
 
+/// A kernel for the items of a list.
+template <class Kernel>
+struct OfList {
+  static constexpr const char* name = Kernel::name;
+  Kernel kernel;
+  View<const Index> list;
+  BR_HD void operator()(Index i) const { kernel(list[i]); }
+};
+
 /// Makes the border of the lists. Every rank calls it.
 /// @param spheres  number of the sphere of each row
 void make_border(World& w, const Buffer<Index>& spheres);
 
-/// Copies follow the owners. Every rank calls it.
+/// Chooses what this rank evaluates, of World::rows. Every rank calls it.
+/// @param spheres  as of make_border
+void share_out_between(World& w, const Buffer<Index>& spheres);
+
+/// Copies that this rank evaluates follow their owners. Every rank calls it.
 void follow_owners(World& w);
+/// All copies do.
+void follow_all_owners(World& w);
+
+/// Gives all ranks the states of all touches, faces and bonds: each keeps up only what it
+/// evaluates. Before a search, when items may have changed hands already; every rank calls it.
+void tell_states(World& w);
+/// That, and all copies as they are now: after steps. Every rank calls it.
+void make_whole(World& w);
 
 }  // namespace breccia::coupled

@@ -48,7 +48,7 @@ struct EndTouches {
 
 void cut_off_removed(World& w) {
   const Exec& exec = w.spheres->exec;
-  follow_owners(w);
+  follow_all_owners(w);
   Buffer<std::uint8_t> bodies(exec.space);
   copy_to(bodies, w.tetrahedra->given->removed);
   const View<const std::uint8_t> gone = std::as_const(bodies).view();

@@ -136,6 +136,7 @@ void derive(World& w) {
            ListSphereRows{std::as_const(spheres).view(), std::as_const(w.border.sphere_here).view(),
                           of_touch.sphere, std::as_const(w.faces.pairs.a).view(), tie,
                           w.rows.view(), w.row_of_touch.view()});
+  if (!w.spheres->domain.single_rank()) share_out_between(w, spheres);
   w.bonded.resize(w.rows.size());
   w.pressed.clear();
   w.pressed.resize(near);

@@ -317,6 +317,7 @@ void find_faces(World& w) {
   const dem::World& s = *w.spheres;
   const fdem3::World& t = *w.tetrahedra;
   const Exec& exec = s.exec;
+  tell_states(w);
   const StageTime timed(exec, "coupling_search");
   constexpr double horizon = 50.0;  // steps that drifts may part for
   const double reach = std::max(w.given->skin, horizon * s.next_dt * parting(w));

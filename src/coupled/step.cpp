@@ -90,18 +90,27 @@ void press_spheres_again(World& w) {
                         w.spheres->critical.view()});
 }
 
+namespace {
+/// A kernel for what this rank evaluates of a list; alone for all of it.
+template <class Kernel>
+void for_evaluated(const World& w, Index count, const Buffer<Index>& here, const Kernel& kernel) {
+  if (w.spheres->domain.single_rank()) return for_each(w.spheres->exec, count, kernel);
+  for_each(w.spheres->exec, here.size(), OfList<Kernel>{kernel, here.view()});
+}
+}  // namespace
+
 void press(World& w) {
   const dem::World& s = *w.spheres;
   follow_owners(w);
   const StageTime timed(s.exec, "coupling");
   const Meeting m = meeting(w);
-  for_each(s.exec, w.bonds.size(),
-           BondForces{s.time, s.last_dt, m.spheres, m.orientation, m.nodes, w.given->bonds.view(),
-                      m.tie, w.bonds.state.view()});
-  for_each(s.exec, w.rows.size(),
-           MarkBonded{w.rows.view(), m.tie, w.bonds.state.view(), w.bonded.view()});
-  for_each(
-      s.exec, w.touches.size(),
+  for_evaluated(w, w.bonds.size(), w.border.bonds,
+                BondForces{s.time, s.last_dt, m.spheres, m.orientation, m.nodes,
+                           w.given->bonds.view(), m.tie, w.bonds.state.view()});
+  for_evaluated(w, w.rows.size(), w.border.rows,
+                MarkBonded{w.rows.view(), m.tie, w.bonds.state.view(), w.bonded.view()});
+  for_evaluated(
+      w, w.touches.size(), w.border.touches,
       PressFaces{s.last_dt, m.spheres, m.sphere_material, m.nodes, m.material, m.body, m.exposed,
                  w.given->laws.view(), w.given->materials, w.rows.view(), w.row_of_touch.view(),
                  w.bonded.view(), w.touches.pairs.b.view(), m.face, w.touches.history.state.view(),

@@ -45,6 +45,7 @@ class CoupledMethod final : public Method {
         taken.dt_max = std::max(taken.dt_max, one.dt_max);
         taken.steps += 1;
       } while (steps() < stop.step && time() < stop.time);
+      coupled::make_whole(w_);
       each_part([](const std::string&, Method& method) { method.end_steps(); });
     });
     return taken;
@@ -158,6 +159,9 @@ class CoupledMethod final : public Method {
                       {"touching", n.touching},
                       {"bonds", n.bonds},
                       {"broken_bonds", n.broken}});
+    if (ranks_ != nullptr)
+      add("domain.coupling_", {{"touches_evaluated", static_cast<double>(w_.border.touches.size())},
+                               {"bonds_evaluated", static_cast<double>(w_.border.bonds.size())}});
     return all;
   }
   std::vector<StateArray> arrays(const std::string& name, Wanted where) override {

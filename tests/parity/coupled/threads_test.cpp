@@ -140,9 +140,19 @@ TEST(CoupledRanks, give_the_same_bits) {
       const auto method = cube_on(&ranks, space);
       advance_to(*method, 300);
       const Seen here = seen(*method);
-      double shared = 0.0;
-      for (const Fact& fact : method->facts())
+      double shared = 0.0, evaluated = 0.0, bonds = 0.0;
+      for (const Fact& fact : method->facts()) {
         if (fact.path.ends_with("domain.sharings")) shared += fact.value;
+        if (fact.path == "domain.coupling_bonds_evaluated") evaluated = fact.value;
+        if (fact.path == "coupling.bonds") bonds = fact.value;
+      }
+      double all = 0.0;
+      Message message;
+      put_array(message, std::vector<double>{evaluated});
+      for (const Message& told : ranks.from_all(message))
+        all += Unpacking(told).array<double>().at(0);
+      EXPECT_GE(all, bonds);
+      EXPECT_LT(all, (count == 2 ? 1.9 : count == 3 ? 2.5 : 3.0) * bonds);
       if (ranks.rank() != 0) return;
       expect_equal(here, one);
       EXPECT_GT(shared, 2.0);  // each method's first sharing, and more
@@ -177,6 +187,34 @@ TEST(CoupledRanks, go_on_from_each_others_states) {
   after->load(&reader);
   advance_to(*after, 400);
   expect_equal(seen(*after), end);
+}
+
+/// Balls that slide along a plate bring their springs of friction to tetrahedra of other ranks.
+TEST(CoupledRanks, keep_the_springs_of_spheres_that_slide_on) {
+  Scene s;
+  fdem3::MaterialConfig& m = s.solids.material(1e9, 0.2, 2500.0);
+  m.joints = "none";
+  m.friction = 0.8;
+  s.solids.body("plate", fdem3::testing::box({0.0, 0.0, -0.005}, {0.12, 0.01, 0.01}, 0.005));
+  s.balls.material("c", "concrete", 1e9, 0.2, 2400.0);
+  for (int i = 0; i < 36; ++i)
+    s.balls.sphere({-0.055 + 0.003 * i, 0.0, 0.00141}, 0.0014, {15.0, 0.0, -8.0});
+  const Config config = s.config();
+  const auto run = [&](Communicator* ranks) {
+    auto method = make_method(config, {s.balls.model, s.solids.model}, Exec{}, ranks);
+    while (method->steps() < 400) method->advance({1.0, 400});
+    return method;
+  };
+  const auto alone = run(nullptr);
+  const Seen one = seen(*alone);
+  EXPECT_GT(alone->energy().friction, 0.0);
+  EXPECT_GT(alone->searches(), 5);
+  for (const int count : {2, 4})
+    simulate_ranks(count, 5, [&](Communicator& ranks) {
+      const auto method = run(&ranks);
+      const Seen here = seen(*method);
+      if (ranks.rank() == 0) expect_equal(here, one);
+    });
 }
 
 /// A servo holds the foot of a block that a pile hits; a stage takes the pile, which is bonded to
