@@ -78,6 +78,27 @@ TEST(RigidStages, are_let_go_again_with_the_motion_they_have) {
   expect_resumed(s);
 }
 
+/// Force and torque of a stage grow from its beginning on, and are gone in the next one.
+TEST(RigidStages, are_pushed_by_the_ramps_of_a_stage) {
+  constexpr double force = 2e5, torque = 1e3, ramp = 1e-5;
+  fdem::testing::Scene s = squares(1);
+  s.config.probes.push_back({"turn", "tool", "angular_momentum_z", "sum"});
+  add_stages(s, 3);
+  fdem::SupportChange push, rest;
+  push.name = rest.name = "tool";
+  push.force = Vec2{force, 0.0};
+  push.torque = torque;
+  push.ramp = ramp;
+  s.config.stages[1].supports = {push};
+  s.config.stages[2].supports = {rest};
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  EXPECT_NEAR(method->probes()[0], 0.5 * force * ramp, 5e-3 * force * ramp);
+  EXPECT_NEAR(method->probes()[2], 0.5 * torque * ramp, 5e-3 * torque * ramp);
+  EXPECT_LT(method->energy().error_relative, 1e-3);
+  expect_resumed(s);
+}
+
 TEST(RigidStages, are_not_slowed_by_local_damping) {
   fdem::testing::Scene s = squares(1);
   s.config.local_damping = 0.5;

@@ -103,6 +103,26 @@ TEST(RigidBodies, spin_on_in_the_plane) {
               torque, 1e-6 * torque);
 }
 
+/// Tables over time: a force and a torque that grow from zero, F t^3/(6 M T), and their work.
+TEST(RigidBodies, follow_tables_of_force_and_torque) {
+  constexpr double force = 3e5, torque = 4e3, grows = 2e-4;
+  fdem::testing::Scene s = plate();
+  fdem::SupportConfig& tool = s.config.supports[0];
+  tool.force.times = tool.torque.times = {0.0, grows};
+  tool.force.values = {Vec2{}, Vec2{force, 0.0}};
+  tool.torque.values = {0.0, torque};
+  fdem::World w = s.world();
+  const fdem::World start = w;
+  const PlaneBody body = plane_body(w, 0);
+  fdem::testing::run_to(w, grows);
+  const double cube = w.time * w.time * w.time / (6.0 * grows);
+  const double way = force * cube / body.mass, angle = torque * cube / body.inertia;
+  EXPECT_NEAR(plane_body(w, 0).centre.x - body.centre.x, way, 2e-3 * way);
+  EXPECT_NEAR(angle_since(start, w, 0), angle, 2e-3 * angle);
+  foresee_motions(w);
+  EXPECT_LT(energies(w).balance.error_relative, 1e-5);
+}
+
 /// Directions that are not free go as they are told.
 TEST(RigidBodies, keep_the_velocity_of_what_is_not_free) {
   fdem::testing::Scene s = plate();
@@ -114,6 +134,20 @@ TEST(RigidBodies, keep_the_velocity_of_what_is_not_free) {
   fdem::testing::run_to(w, 1e-4);
   const Vec2 way{4.0 * w.time, 0.5 * w.time * w.time * 1e5 / body.mass};
   EXPECT_LT(norm(plane_body(w, 0).centre - body.centre - way), 1e-9 * norm(way));
+}
+
+/// A body that flies as a whole begins with that only along what is free: the ledger starts there.
+TEST(RigidBodies, begin_with_what_they_are_told_along_the_rest) {
+  fdem::testing::Scene s = plate();
+  s.config.supports[0].free = {"y"};
+  for (Vec2& velocity : s.model.velocity) velocity = {3.0, -2.0};
+  fdem::World w = s.world();
+  const double moves = 0.5 * plane_body(w, 0).mass * 4.0;
+  EXPECT_NEAR(energies(w).balance.kinetic, moves, 1e-9 * moves);
+  fdem::testing::run_to(w, 1e-5);
+  foresee_motions(w);
+  EXPECT_NEAR(energies(w).balance.kinetic, moves, 1e-6 * moves);
+  EXPECT_LT(energies(w).balance.error_relative, 1e-9);
 }
 
 /// Without "turn" a push beside the centre moves it, and does not turn it.
