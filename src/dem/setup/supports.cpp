@@ -47,6 +47,46 @@ std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
   return members;
 }
 
+/// How far a point lies outside of a region that is a box, a cylinder or a sphere.  [m]
+double distance_to(const SupportConfig& s, const Vec3& x) {
+  const Vec3 beside{std::max({s.min.x - x.x, x.x - s.max.x, 0.0}),
+                    std::max({s.min.y - x.y, x.y - s.max.y, 0.0}),
+                    std::max({s.min.z - x.z, x.z - s.max.z, 0.0})};
+  if (!(s.radius > 0.0)) return norm(beside);
+  Vec3 out = x - s.center;
+  if (s.around == "x") out.x = 0.0;
+  if (s.around == "y") out.y = 0.0;
+  if (s.around == "z") out.z = 0.0;
+  return std::max(norm(beside), norm(out) - s.radius);
+}
+
+/// "; the nearest, at (x, y, z) m, is 0.001 m away and has a radius of ..."; empty where a polygon
+/// or what lies outside is asked for.
+std::string nearest_element(const SupportConfig& s, const Model& m) {
+  if (s.outside || !s.polygon.empty()) return "";
+  double least = no_limit;
+  std::size_t nearest = 0;
+  for (std::size_t e = 0; e < m.position.size(); ++e) {
+    if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[e])] != s.on) continue;
+    if (const double away = distance_to(s, m.position[e]); away < least) {
+      least = away;
+      nearest = e;
+    }
+  }
+  if (!(least < no_limit)) return "";
+  const Vec3& x = m.position[nearest];
+  return fmt::format(
+      "; the nearest, at ({:.4g}, {:.4g}, {:.4g}) m, is {:.3g} m away (radius {:.3g} m)", x.x, x.y,
+      x.z, least, m.radius[nearest]);
+}
+
+[[noreturn]] void refuse_supports(const std::vector<std::string>& problems) {
+  std::string text = fmt::format("{} problem{} with the supports; nothing was run.",
+                                 problems.size(), problems.size() == 1 ? "" : "s");
+  for (const std::string& problem : problems) text += "\n  " + problem;
+  throw InputError(text);
+}
+
 /// Gives each direction of each element to the supports that prescribe it.
 class Holding {
  public:
@@ -61,19 +101,10 @@ class Holding {
     all_.members = std::move(members);
     for (std::size_t s = 0; s < supports_.size(); ++s) {
       const std::uint8_t bits = fixed_bits(supports_[s]);
-      if (all_.members[s].empty())
-        problems_.push_back(
-            "support " + supports_[s].name +
-            " holds no element: a region takes those whose centres are in it, which lie "
-            "a radius and more inside of a body's faces");
       for (const Index e : all_.members[s]) hold(s, bits, static_cast<std::size_t>(e));
     }
     for (const auto& [clash, found] : clashes_) tell(clash, found);
-    if (problems_.empty()) return;
-    std::string text = fmt::format("{} problem{} with the supports; nothing was run.",
-                                   problems_.size(), problems_.size() == 1 ? "" : "s");
-    for (const std::string& problem : problems_) text += "\n  " + problem;
-    throw InputError(text);
+    if (!problems_.empty()) refuse_supports(problems_);
   }
 
   Prescribed prescribed() {
@@ -288,8 +319,17 @@ Vec3 Prescribed::spin_at_start(std::size_t element, const Vec3& own) const {
 
 std::vector<std::vector<Index>> support_members(const Config& config, const Model& model) {
   std::vector<std::vector<Index>> members;
-  for (const SupportConfig& support : config.supports)
+  std::vector<std::string> problems;
+  for (const SupportConfig& support : config.supports) {
     members.push_back(members_of(support, model));
+    if (members.back().empty())
+      problems.push_back(
+          "support " + support.name +
+          " holds no element: a region takes those whose centres are in it, which lie a radius and "
+          "more inside of a body's faces" +
+          nearest_element(support, model));
+  }
+  if (!problems.empty()) refuse_supports(problems);
   return members;
 }
 

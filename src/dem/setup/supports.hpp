@@ -44,6 +44,7 @@ struct Prescribed {
 };
 
 /// The elements in the region of each support at the start, ascending.
+/// @throws InputError naming supports that hold none, with the nearest element
 std::vector<std::vector<Index>> support_members(const Config& config, const Model& model);
 
 /// The members of a support that links join to elements that it does not hold.
@@ -54,7 +55,7 @@ std::vector<Index> tied_members(const Model& model, const std::vector<Index>& me
 /// @param members   of each support
 /// @param elements  how many there are in the whole model
 /// @param dashpots, masses  Case::dashpots, Case::masses
-/// @throws InputError naming supports that hold no element, or that contradict each other
+/// @throws InputError naming supports that contradict each other
 Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
                       std::size_t elements, const std::vector<Vec3>& dashpots,
                       const std::vector<double>& masses);

@@ -240,6 +240,26 @@ TEST_F(Doubts, tell_the_modulus_of_a_specimen) {
   EXPECT_TRUE(has(told.text, " GPa\" gives 30 GPa")) << told.text;
 }
 
+/// A support between centres, and a packing of too few: with line, name and what is near.
+TEST_F(Doubts, refuse_supports_that_hold_no_element) {
+  const std::string thin = packed +
+                           "[[support]]\nname = \"foot\"\non = \"block\"\nmax = [\"1 m\", \"1 m\", "
+                           "\"-49.9 mm\"]\n";
+  for (const Told& told : {told_by("check", thin), run(thin)}) {
+    EXPECT_EQ(told.exit_code, 2) << told.text;
+    EXPECT_TRUE(has(told.text, "line 15, support foot holds no element")) << told.text;
+    EXPECT_TRUE(has(told.text, "; the nearest, at (")) << told.text;
+    EXPECT_TRUE(has(told.text, " m away (radius 0.00")) << told.text;
+  }
+  std::string few = packed;
+  few.replace(few.find("300"), 3, "7");
+  few.replace(few.find("0.1 m"), 5, "0.4 m");
+  const Told told = told_by("check", few);
+  EXPECT_EQ(told.exit_code, 2) << told.text;
+  EXPECT_TRUE(has(told.text, "line 14, body.block.pack.count: 7 elements are too few"))
+      << told.text;
+}
+
 /// A ball in the middle of a block, on it, and tied to it.
 TEST_F(Doubts, tell_of_spheres_that_begin_inside_of_tetrahedra) {
   const auto at = [&](const std::string& z, const std::string& more = "") {
