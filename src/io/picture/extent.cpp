@@ -166,11 +166,41 @@ bool shows(const Extent& extent, const Extent& other) {
 
 }  // namespace
 
+namespace {
+
+/// An extent with those walls that end within a sixth of its size around it, as rollers and platens
+/// do; longer ones, and those that are away, would make the model small.
+Extent with_walls(const Extent& extent, const Frame& frame) {
+  const double reach = size_of(extent) / 6.0;
+  Extent all = extent;
+  for (const FrameWall& wall : frame.walls) {
+    Extent box = nothing();
+    for (const Vec3& corner : wall.corners) {
+      if (!is_finite(corner)) continue;
+      box.low = {std::min(box.low.x, corner.x), std::min(box.low.y, corner.y),
+                 std::min(box.low.z, corner.z)};
+      box.high = {std::max(box.high.x, corner.x), std::max(box.high.y, corner.y),
+                  std::max(box.high.z, corner.z)};
+    }
+    const bool ends_near = box.low.x <= box.high.x && box.low.x >= extent.low.x - reach &&
+                           box.low.y >= extent.low.y - reach && box.low.z >= extent.low.z - reach &&
+                           box.high.x <= extent.high.x + reach &&
+                           box.high.y <= extent.high.y + reach &&
+                           box.high.z <= extent.high.z + reach;
+    if (ends_near) all = joined(all, box, 0.0);
+  }
+  return all;
+}
+
+}  // namespace
+
 Extent bulk_extent(const Frame& frame) {
   Extent extent = nothing();
   for (const std::vector<std::size_t>& body : bodies_of(frame)) add_bulk(extent, frame, body);
   if (extent.low.x > extent.high.x) return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
-  return with_outline(extent, frame);
+  const Extent all = with_walls(extent, frame);
+  const bool wider = norm(all.low - extent.low) + norm(all.high - extent.high) > 0.0;
+  return wider ? all : with_outline(extent, frame);  // an outline is that of bodies alone
 }
 
 Extent grown_extent(const Extent& extent, const Extent& first, const Frame& frame, double share) {

@@ -77,7 +77,8 @@ struct RenderOptions {
 };
 
 /// The box around the bulk of each body of a frame, by its field "group": a small body far from a
-/// large one is shown, while a few fragments of a body that flew far do not widen the box.
+/// large one is shown, while a few fragments of a body that flew far do not widen the box. Rollers
+/// and platens beside them are in it.
 Extent bulk_extent(const Frame& frame);
 
 /// The extent for a later frame: the given one, widened where a body leaves it. What flies far

@@ -252,6 +252,25 @@ TEST(looks, a_crack_goes_with_the_middle_of_its_sides) {
   EXPECT_NEAR(moved.position[13].x, 1.5, 1e-5);
 }
 
+/// A roller on a beam is in the picture; a long rod, one that is away and a plane do not widen it.
+TEST(looks, the_extent_holds_rollers_and_platens) {
+  std::vector<Vec3> row;
+  for (int i = 0; i < 41; ++i) row.push_back({0.1 * i - 2.0, 0.0, 0.0});
+  Frame frame = spheres(row, 0.05);
+  const auto wall = [](double from, double to) {
+    return FrameWall{{0, 0, from}, {0, 0, -1}, {{-0.1, 0, from}, {0.1, 0, from}, {0, 0, to}}};
+  };
+  const Extent alone = bulk_extent(frame);
+  frame.walls = {wall(0.05, 0.35), {{0, 0, -1}, {0, 0, 1}}};
+  const Extent with = bulk_extent(frame);
+  EXPECT_NEAR(with.high.z, 0.35, 1e-12);
+  EXPECT_EQ(with.low.z, alone.low.z);
+  EXPECT_EQ(with.high.x, alone.high.x);
+  EXPECT_EQ(with.outline_points, 0);
+  frame.walls = {wall(0.05, 3.0), wall(8.0, 8.3)};
+  EXPECT_EQ(bulk_extent(frame).high.z, alone.high.z);
+}
+
 TEST(looks, the_extent_grows_with_what_leaves_it_and_follows_what_flies_far) {
   std::vector<Vec3> cloud;
   for (int i = 0; i < 125; ++i) cloud.push_back({0.1 * (i % 5), 0.1 * (i / 5 % 5), 0.1 * (i / 25)});
