@@ -154,7 +154,11 @@ class SimMethod final : public Method {
   EnergyBalance energy() override {
     const Energies all = energies_of_all();
     if (!leads(world_.ranks())) return {};
-    return Sim::balance(world_.ledger(), all, steps());
+    EnergyBalance now = Sim::balance(world_.ledger(), all, steps());
+    if (spent_on_cracks_ == 0.0) return now;
+    now.fracture += spent_on_cracks_;
+    if (steps() != 0) now.relate_to(world_.ledger().largest);
+    return now;
   }
   std::vector<double> probes() override {
     std::vector<double> values = read_now(probes_);
@@ -415,18 +419,22 @@ class SimMethod final : public Method {
     if (dot(change, change) > 0.0)
       booked([&] { world_.in_both([&](World& w) { set_gravity(w, gravity_); }); });
   }
-  /// Counts the energy that a change of the model between two steps puts in as work.
+  /// Counts the energy that a change of the model between two steps puts in as work. What cracks
+  /// have spent stays spent: links tell it by their law, which may be another one now.
   template <class Change>
   void booked(const Change& change) {
     const Energies before = energies_of_all();
     change();
     const Energies after = energies_of_all();
     if (!leads(world_.ranks())) return;
-    const auto missing = [this](const Energies& all) {
+    const auto balance = [this](const Energies& all) {
       Ledger ledger = world_.ledger();
-      return Sim::balance(ledger, all, steps()).missing();
+      return Sim::balance(ledger, all, steps());
     };
-    world_.ledger().start_potential.add(missing(before) - missing(after));
+    const EnergyBalance was = balance(before), is = balance(after);
+    const double spent = was.fracture - is.fracture;
+    spent_on_cracks_ += spent;
+    world_.ledger().start_potential.add(was.missing() - (is.missing() + spent));
   }
   /// The stage that a checkpoint is in, on all ranks, and the case as it is then.
   void take_stage(const CheckpointReader* reader) {
@@ -447,7 +455,10 @@ class SimMethod final : public Method {
 
   template <class Visit>
   void each_stored(World& w, const Visit& visit) {
-    if (!case_.stages.empty()) visit("stage", w.stage);
+    if (!case_.stages.empty()) {
+      visit("stage", w.stage);
+      visit("spent_on_cracks", spent_on_cracks_);
+    }
     for (std::size_t k = 0; k < w.servos.size(); ++k)
       visit("servos." + std::to_string(k), w.servos[k]);
     visit("step", w.step);
@@ -480,6 +491,7 @@ class SimMethod final : public Method {
   Config case_;
   Config now_;                                  ///< as it is in the present stage
   decltype(Config{}.gravity.value) gravity_{};  ///< as it acts now  [m/s2]
+  double spent_on_cracks_ = 0.0;                ///< of links whose law a stage has changed  [J]
 };
 
 }  // namespace breccia

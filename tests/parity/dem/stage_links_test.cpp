@@ -197,6 +197,33 @@ TEST(StageModuli, change_the_energy_of_what_moves_and_it_is_all_booked) {
     }
 }
 
+/// A link that has softened tells what that spent by its law: by another one it would be less.
+TEST(StageLinks, of_another_strength_keep_what_cracks_have_spent) {
+  dem::testing::Scene s = held_pair("concrete", 0.4, -1.0);
+  s.config.materials[0].tensile_strength = 4e6;
+  s.config.stages[1].materials[0].tensile_strength = 1e6;
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  while (method->time() < 3e-5) method->advance({3e-5, method->steps() + 1});
+  const EnergyBalance before = method->energy();
+  ASSERT_GT(before.fracture, 0.01 * before.work);
+  StageProgress next = method->stage();
+  next.index = 1;
+  next.begin[1] = method->time();
+  method->set_stage(next);
+  const EnergyBalance after = method->energy();
+  EXPECT_EQ(after.fracture, before.fracture);
+  EXPECT_LT(after.elastic, before.elastic);
+  EXPECT_NEAR(after.work - before.work, after.elastic - before.elastic, 1e-12 * before.work);
+  EXPECT_NEAR(after.error_relative, before.error_relative, 1e-12);
+  // A run that goes on from a checkpoint has it, too.
+  CheckpointWriter writer;
+  method->save(writer);
+  const auto again = make_method(s.config, s.model, {}, nullptr);
+  const CheckpointReader reader(writer);
+  again->load(&reader);
+  EXPECT_EQ(again->energy().fracture, before.fracture);
+}
+
 /// Links that soften keep their damage; some break later.
 TEST(StageModuli, are_alike_on_threads_schedule_and_ranks_and_resumed) {
   dem::testing::Scene s = weakened("concrete");
