@@ -16,13 +16,6 @@ struct ContactPair {
   double penalty;     ///< p_n  [Pa]
   double tangential;  ///< p_t  [Pa]
   double friction;    ///< mu  [-]
-
-  /// Energy of a spring of friction over the square of its force, 1/(2 p_t).  [1/Pa]
-  BR_HD double softness() const { return tangential > 0.0 ? 0.5 / tangential : 0.0; }
-  /// As it acts in a couple.
-  BR_HD ContactPair in_couple(double scale, double stiffened) const {
-    return {scale * penalty, (1.0 + stiffened) * tangential, friction};
-  }
 };
 
 /// How the normal forces of a couple fall as it opens, so that it gives back e^2 of what it took
@@ -51,15 +44,14 @@ struct Rebound {
 
 /// State of a couple of triangles.
 struct CoupleState {
-  double drag[6];    ///< tangential force of a's edges through b, then of b's through a  [N/m]
-  double stiffened;  ///< by this times p_t its springs of friction are stiffer than p_t  [-]
-  double scale;      ///< of its normal penalty; 0: it is new  [-]
-  double work;       ///< taken up since it began to touch, friction included  [J/m]
-  double slid;       ///< the part of it that friction has spent  [J/m]
-  double sprung;     ///< the part of it that the springs of friction hold  [J/m]
-  double lost;       ///< what was left of both when it parted: errors of integration  [J/m]
-  double rubbed;     ///< what friction spent in touches that have ended  [J/m]
-  double most;  ///< energy of its overlap since it began to touch, if contacts lose some  [J/m]
+  double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
+  double scale;    ///< of its normal penalty; 0: it is new  [-]
+  double work;     ///< taken up since it began to touch, friction included  [J/m]
+  double slid;     ///< the part of it that friction has spent  [J/m]
+  double sprung;   ///< the part of it that the springs of friction hold  [J/m]
+  double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
+  double rubbed;   ///< what friction spent in touches that have ended  [J/m]
+  double most;     ///< energy of its overlap since it began to touch, if contacts lose some  [J/m]
 };
 
 /// Forces of a couple on the corners of both triangles.  [N/m]
@@ -111,14 +103,17 @@ struct EdgePushOf {
   decltype(R{} < R{}) touches{};
   Vec2Of<R> normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
   R drag{};                                    ///< what friction pulls with now  [N/m]
-  R taken{};                                   ///< work of friction in this step  [J/m]
+  R taken{};                                   ///< work that it has taken up in this step  [J/m]
   R sprung{};                                  ///< what its spring holds now  [J/m]
 };
 using EdgePush = EdgePushOf<double>;
 
-/// Work that friction of a couple takes up in a step, by the trapezoidal rule, and what its springs
-/// hold after it: no more than they were given. The rest is spent, what held a spring that is
-/// forgotten, too.  [J/m]
+/// Work that friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule
+/// where T acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge
+/// inside), but no more than they were given. The rest is spent. k goes with the edge: where it
+/// shrinks under a T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend
+/// what nobody put in. A spring that is forgotten has spent what it held; what one gives back
+/// beyond what it was given counts against what friction spends.  [J/m]
 struct FrictionWork {
   double taken = 0.0, sprung = 0.0;
   BR_HD void add(double more_taken, double more_sprung) {
@@ -132,25 +127,18 @@ struct FrictionWork {
   }
 };
 
-/// Friction of an edge is a spring of stiffness k = p_t, however much of the edge is inside:
-///
-///   T <- T cut at mu N,   T <- T + k v_t dt, cut again
-///
-/// It holds T^2/(2 k). With v_t where T acts that grows by just the work of T by the trapezoidal
-/// rule, and each cut spends: friction gives nothing that it was not given. A k that went with the
-/// part inside would let T^2/(2 k) grow as the edge leaves, or T and the body with it give way.
-/// @param law   as it acts in this couple
-/// @param drag  what friction pulled with before  [N/m]
-/// @param dt    the step that led here  [s]
+/// @param scale  of the penalty  @param drag  what friction pulled with before  [N/m]
+/// @param dt     the step that led here  [s]
 template <class R, class End>
-BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, const R& drag, double dt,
+BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, const R& drag, double dt,
                                      const End& from, const End& to, const TargetOf<R>& target,
                                      const Vec2Of<R> (&target_v)[3]) {
   EdgePushOf<R> p;
   EdgeOverlapOf<R>& o = p.overlap;
   p.touches = overlap_of_edge(from.position, to.position, target, o);
   if (!any(p.touches)) return p;
-  normal_forces(o, from.position, to.position, law.penalty, p.normal[0], p.normal[1]);
+  const double penalty = scale * law.penalty;
+  normal_forces(o, from.position, to.position, penalty, p.normal[0], p.normal[1]);
   const R zero = constant<R>(0.0), one = constant<R>(1.0);
   p.drag = select(p.touches, drag, zero);
   if (!(law.friction > 0.0)) return p;
@@ -163,15 +151,13 @@ BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, const R& drag, doub
     for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + s * (o.at_b[m] - o.at_a[m])) * target_v[m];
     return dot(rate, along);
   };
+  const R stiffness = law.tangential * (o.end - o.begin);
+  const R limit = law.friction * penalty * o.whole * size;
+  R pull = drag + stiffness * dt * rate_at(0.5 * (o.begin + o.end));
+  pull = select(abs(pull) > limit, select(pull < 0.0, -limit, limit), pull);
   const R share = o.moment / o.whole;
-  const R limit = law.friction * law.penalty * o.whole * size;
-  const auto within = [&limit](const R& pull) { return max(-limit, min(limit, pull)); };
-  const R cut = within(drag), slip = dt * rate_at(share);
-  const R tried = cut + law.tangential * slip, pull = within(tried);
-  // What has fallen since the last step acts with its mean, unless all turns round in one step.
-  const R before = select((drag + pull) * (tried - pull) < zero, cut, drag);
-  p.taken = 0.5 * (before + pull) * slip;
-  p.sprung = law.softness() * pull * pull;
+  p.taken = 0.5 * dt * (drag + pull) * rate_at(share);
+  p.sprung = 0.5 * pull * pull / stiffness;
   p.friction[0] = (pull * (one - share)) * along;
   p.friction[1] = (pull * share) * along;
   p.drag = select(p.touches, pull, zero);
@@ -186,19 +172,20 @@ struct EdgesInTurn {
   BR_HD bool near(const Vec2 (&xa)[3], const Vec2 (&xb)[3]) const { return meet(xa, xb); }
   /// Calls visit(edge, push) for edges 0 to 2 of a in b, then for 3 to 5: those of b in a.
   template <class Visit>
-  BR_HD void operator()(const ContactPair& law, const double (&drag)[6], double dt,
+  BR_HD void operator()(const ContactPair& law, double scale, const double (&drag)[6], double dt,
                         const Vec2 (&xa)[3], const Vec2 (&va)[3], const Target& of_a,
                         const Vec2 (&xb)[3], const Vec2 (&vb)[3], const Target& of_b,
                         const Visit& visit) const {
     using End = EdgeEnd<double>;
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
-      visit(k, edge_push(law, drag[k], dt, End{xa[k], va[k]}, End{xa[next], va[next]}, of_b, vb));
+      visit(k, edge_push(law, scale, drag[k], dt, End{xa[k], va[k]}, End{xa[next], va[next]}, of_b,
+                         vb));
     }
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
-      visit(3 + k,
-            edge_push(law, drag[3 + k], dt, End{xb[k], vb[k]}, End{xb[next], vb[next]}, of_a, va));
+      visit(3 + k, edge_push(law, scale, drag[3 + k], dt, End{xb[k], vb[k]},
+                             End{xb[next], vb[next]}, of_a, va));
     }
   }
 };
@@ -285,24 +272,25 @@ struct CoupleForces {
           scale *= now.share;
           kept.most = now.most;
         }
-      const ContactPair acts = law.in_couple(scale, kept.stiffened);
-      edges(acts, kept.drag, dt, xa, va, of_a, xb, vb, of_b, [&](int edge, const EdgePush& p) {
-        kept.drag[edge] = p.drag;
-        if (!p.touches) return;
-        touching = true;
-        friction_work.add(p.taken, p.sprung);
-        const bool of_own = edge < 3;
-        auto& on_x = of_own ? sum.on_a.at : sum.on_b.at;
-        auto& on_target = of_own ? sum.on_b.at : sum.on_a.at;
-        const int k = of_own ? edge : edge - 3;
-        push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
-        if (law.friction > 0.0) push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
-      });
+      edges(law, scale, kept.drag, dt, xa, va, of_a, xb, vb, of_b,
+            [&](int edge, const EdgePush& p) {
+              kept.drag[edge] = p.drag;
+              if (!p.touches) return;
+              touching = true;
+              friction_work.add(p.taken, p.sprung);
+              const bool of_own = edge < 3;
+              auto& on_x = of_own ? sum.on_a.at : sum.on_b.at;
+              auto& on_target = of_own ? sum.on_b.at : sum.on_a.at;
+              const int k = of_own ? edge : edge - 3;
+              push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
+              if (law.friction > 0.0)
+                push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
+            });
       if constexpr (Edges::any_couple)
         if (touching && conservative) {
           const Polygon over = overlap_of(of_a, of_b);
-          add_shape_forces(of_a, over, acts.penalty, sum.on_a.at);
-          add_shape_forces(of_b, over, acts.penalty, sum.on_b.at);
+          add_shape_forces(of_a, over, scale * law.penalty, sum.on_a.at);
+          add_shape_forces(of_b, over, scale * law.penalty, sum.on_b.at);
         }
     }
     CoupleForceOf<Number>& stored = force[i];
@@ -322,7 +310,7 @@ struct CoupleForces {
     if (!touching) {
       kept.lost += kept.work - kept.slid;
       kept.rubbed += kept.slid;
-      kept.work = kept.slid = kept.most = kept.stiffened = 0.0;
+      kept.work = kept.slid = kept.most = 0.0;
       kept.scale = 1.0;
       for (double& drag : kept.drag) drag = 0.0;
     }
@@ -382,9 +370,8 @@ struct CoupleForces {
   }
 
   /// Gives a couple in overlap the forces that its faces carry, as far as friction bears them.
-  /// Springs of friction are softer than joints and would hold more at that force; they are as much
-  /// stiffer as it takes to store what was held there, but no stiffer than the penalty across. What
-  /// even that stores beyond is taken off the force: nobody has paid for it.
+  /// Springs of friction are softer than joints and would hold more at that force; the couple
+  /// stores what was held there, no more.
   /// @param edges  that lie on each other, of a and of b
   /// @returns what it stores then
   BR_HD static JointWork begin_pressed(const JointHandover& broken, const int (&edges)[2],
@@ -397,25 +384,25 @@ struct CoupleForces {
     JointWork given{penalty * (potential_integral(of_a, over) + potential_integral(of_b, over)),
                     0.0};
 
-    double limit[2] = {};
+    double limit[2] = {}, stiffness[2] = {};
     for (int side = 0; side < 2; ++side) {
       const Vec2(&x)[3] = side == 0 ? xa : xb;
       const Vec2 &from = x[edges[side]], &to = x[(edges[side] + 1) % 3];
       EdgeOverlap o;
-      if (overlap_of_edge(from, to, side == 0 ? of_b : of_a, o))
-        limit[side] = law.friction * penalty * o.whole * norm(to - from);
+      if (!overlap_of_edge(from, to, side == 0 ? of_b : of_a, o)) continue;
+      limit[side] = law.friction * penalty * o.whole * norm(to - from);
+      stiffness[side] = law.tangential * (o.end - o.begin);
     }
     // Along either edge, in its own direction, it is the same: both turn.
-    const double most = limit[0] + limit[1], held = broken.held.slide;
+    const double most = limit[0] + limit[1];
     if (most > 0.0) {
-      double share = max(-1.0, min(1.0, broken.shear / most));
-      const double soft = law.softness() * share * share *
-                          (limit[0] * limit[0] + limit[1] * limit[1]);  // springs no stiffer hold
-      if (soft > held)
-        kept.stiffened = max(1.0, min(law.penalty / law.tangential, soft / held)) - 1.0;
-      given.slide = soft / (1.0 + kept.stiffened);
-      if (given.slide > held) share *= sqrt(held / given.slide);
-      for (int side = 0; side < 2; ++side) kept.drag[3 * side + edges[side]] = share * limit[side];
+      const double share = max(-1.0, min(1.0, broken.shear / most));
+      for (int side = 0; side < 2; ++side) {
+        if (!(stiffness[side] > 0.0)) continue;
+        const double drag = share * limit[side];
+        kept.drag[3 * side + edges[side]] = drag;
+        given.slide += 0.5 * drag * drag / stiffness[side];
+      }
     }
     given = given.within(broken.held);
     kept.work = given.open + given.slide;

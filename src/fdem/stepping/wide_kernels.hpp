@@ -91,7 +91,7 @@ struct CouplesWide {
 
   struct Loaded {
     Index a, b, parent_joint;
-    double scale, drag, stiffened, work, slid, sprung;
+    double scale, drag, work, slid, sprung;
     NodeState corner[3];  ///< of the own triangle, from the own one on
     NodeState other[3];
   };
@@ -115,7 +115,6 @@ struct CouplesWide {
     loaded.parent_joint = read_now(&all.parent_joint[c]);
     loaded.scale = read_now(&kept.scale);
     loaded.drag = read_now(&kept.drag[Place(i).edge]);
-    loaded.stiffened = read_now(&kept.stiffened);
     loaded.work = read_now(&kept.work);
     loaded.slid = read_now(&kept.slid);
     loaded.sprung = read_now(&kept.sprung);
@@ -166,7 +165,6 @@ struct CouplesWide {
         group.wait();
         loaded.scale = kept.scale;
         loaded.drag = kept.drag[place.edge];
-        loaded.stiffened = kept.stiffened;
         loaded.work = kept.work;
         loaded.sprung = kept.sprung;
         group.wait();
@@ -179,9 +177,8 @@ struct CouplesWide {
         scale *= now.share;
         if (leads) kept.most = now.most;
       }
-      const ContactPair acts = law.in_couple(scale, loaded.stiffened);
-      mine = edge_push(acts, loaded.drag, dt, loaded.corner[0], loaded.corner[1], Target::of(other),
-                       other_v);
+      mine = edge_push(law, scale, loaded.drag, dt, loaded.corner[0], loaded.corner[1],
+                       Target::of(other), other_v);
       kept.drag[place.edge] = mine.drag;
       touching = group.ballot(mine.touches) & 0x3fU;
       for (int s = 0; s < 6; ++s) {
@@ -208,7 +205,7 @@ struct CouplesWide {
           add(vector_from(s, mine.friction[0]), vector_from(s, mine.friction[1]));
       }
       if (touching != 0 && all.conservative)
-        sum += cold_shape_force(&all, c, acts.penalty, place.of_a, place.of);
+        sum += cold_shape_force(&all, c, scale * law.penalty, place.of_a, place.of);
     }
     if (is_new && leads) kept.scale = loaded.scale;
 
@@ -234,7 +231,7 @@ struct CouplesWide {
         kept.lost += loaded.work - loaded.slid;
         kept.rubbed += loaded.slid;
         kept.scale = 1.0;
-        kept.most = kept.stiffened = 0.0;
+        kept.most = 0.0;
       }
       loaded.work = loaded.slid = 0.0;
     }
