@@ -260,8 +260,9 @@ struct ContactConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     key("restitution", restitution, "-", Range{0.05, 1.0},
-        "coefficient of restitution: a contact gives back e^2 of the energy that it has taken up; "
-        "1: all; less costs one polygon cut a contact and step, and shorter steps");
+        "coefficient of restitution of bodies that hardly deform: a contact gives back e^2 of the "
+        "energy that it has taken up (1: all), elastic bodies give back all of theirs; less than 1 "
+        "costs one polygon cut a contact and step, and shorter steps");
     key("conservative", conservative,
         "adds the forces that make contact of deformable triangles the gradient of an energy; "
         "costs one polygon cut a contact");
