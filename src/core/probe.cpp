@@ -72,7 +72,9 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of, std::si
   if (stress_of_spheres && (endless(p.min) || endless(p.max)))
     add(": the stress of spheres is a mean over a box; give it ends on all sides");
   if (stress_of_spheres && !p.on.empty())
-    add(".on: the stress of spheres is of all that is in the box; leave on out");
+    add(".on: the stress of spheres is of all that is in the box; leave on out, or in a case of "
+        "both "
+        "methods give \"spheres\"");
   if ((stress_of_spheres || kind == Kind::strain) && p.reduce != "mean")
     add(".reduce = \"" + p.reduce + "\": " + p.quantity +
         " of a region is one value; leave it out");
