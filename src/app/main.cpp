@@ -56,7 +56,7 @@ struct FoldedHelp : CLI::Formatter {
   }
 };
 
-/// What is wrong with arguments that a command does not take, in the order in which they stand.
+/// Problems of arguments that a command does not take, in the order in which they stand.
 std::string text_of_extras(const CLI::App& command) {
   std::set<std::string> options;
   std::string takes;

@@ -93,7 +93,7 @@ double element_size(const dem::BodyConfig& b, const dem::Config&) {
   return std::cbrt(6.0 / pi * volume / b.pack.count);
 }
 
-/// What a case says of places and sizes besides its bodies.
+/// Places and sizes that a case names besides its bodies.
 struct Placed {
   std::string key;
   std::vector<std::pair<std::size_t, double>> places;  ///< axis and coordinate  [m]
