@@ -2,7 +2,8 @@
 """Pull-out of a bar and beams of reinforced concrete against formulas, for docs/validation-concrete.md.
 
     scripts/reinforced_tests.py [--seeds 3] [--elements 0] [--binary build/release/breccia] [--device cpu] [--jobs 1] [NAME...]
-    NAME: pull_out bending flow shear stirrups plate; elements: of the concrete; 0: 3,900 of a beam, 1,080 of a pull-out
+    NAME: pull_out bending flow shear stirrups plate tied drop, or one of drop (drop_1 to drop_4, tied_, ductile_); elements: of the concrete;
+    0: 3,900 of a beam, 1,080 of a pull-out
 
 Concrete: c30 of cases/rc_slab with friction bounded under pressure (f_c 33.5, f_t 3.3 MPa in prisms of `breccia test`); bars
 of 500 MPa; bond by the Model Code 1990, tau_max 13.7 MPa = 2.5 sqrt(30). In shear and stirrups a crack along a bar takes 100 J/m2, and
@@ -16,6 +17,9 @@ flow      the same with bars that do not harden, as the formula has it
 shear     the same with 2 bars of 16 mm with ends bent upwards, on pins below them: too strong in bending for its shear strength
 stirrups  the same with 11 stirrups of 6 mm, whose elements touch the bars that they hold
 plate     the same, pressed by three bars side by side, 76 mm in all
+tied      the beam of bending with 10 stirrups of 6 mm, whose elements touch the bars that they hold, and two bars of 6 mm on top
+drop      the beams of bending (drop_1 to drop_4) and tied (tied_1 to tied_4) under a hammer of 60 kg at 1 to 4 m/s: a rigid cylinder of 50 mm radius
+          across the beam; no gravity, no damping. Bars break where a piece of 20 mm is 8 % longer; in ductile_1 to ductile_4, that of tied, 20 %
 """
 import argparse
 import csv
@@ -129,6 +133,45 @@ def beam(seed, elements):
             + bars("bars", 0.006, 0.02, [(line, 2, [0.0, 0.06, 0.0], False)]) + loads(-0.02, 0.016, 0.055))
 
 
+HAMMER, NOSE = 60.0, 0.05  # mass  [kg]  and radius  [m]
+
+
+def ties():
+    """Stirrups of 6 mm around the bars at +-0.03 and two bars of 6 mm on top: where they cross elements touch."""
+    y, side, low, high = 0.03, 0.042, TIE - 0.006, 0.055  # pieces of 12 mm: shorter ones shorten the step
+    ring = [[-0.36, *point] for point in ((-side, low), (-y, low), (y, low), (side, low), (side, high), (y, high), (-y, high), (-side, high))]
+    top = [[-0.48, -y, high - 0.006], [0.48, -y, high - 0.006]]
+    return (bars("top", 0.006, 0.02, [(top, 2, [0.0, 2 * y, 0.0], False)])
+            + bars("stirrups", 0.006, 0.02, [(ring, 10, [0.08, 0.0, 0.0], True)]))
+
+
+def tied(seed, elements):
+    """The slender beam with stirrups; the bar that presses it lies higher, beside bars on top."""
+    line = [[-0.48, -0.03, TIE], [0.48, -0.03, TIE]]
+    return (head("Reinforced beam", seed, 40e-3, 0.0) + box((1.0, WIDTH, HEIGHT), elements)
+            + bars("bars", 0.006, 0.02, [(line, 2, [0.0, 0.06, 0.0], False)]) + ties() + loads(-0.02, 0.016, 0.066))
+
+
+def drop(seed, elements, kind, speed):
+    """The slender beam on its pins, struck in the middle by a hammer that flies freely."""
+    line = [[-0.48, -0.03, TIE], [0.48, -0.03, TIE]]
+    middle, ends = (-0.02, 0.02), [(side * SPAN / 2 - 0.01, side * SPAN / 2 + 0.01) for side in (-1, 1)]
+
+    def motion(name, on, between):
+        return probe(name, on, "displacement_z", "mean") + f"min = [{between[0]:.4g}, -1.0, -1.0]\nmax = [{between[1]:.4g}, 1.0, 1.0]\n"
+    top = head("Reinforced beam under a hammer", seed, SPEEDS[speed], 0.0).replace("frames = 2", "frames = 2\nhistory = 2e-5")
+    return ((top.replace("failure_strain = 0.08", "failure_strain = 0.2") if kind == "ductile" else top)
+            + box((1.0, WIDTH, HEIGHT), elements) + bars("bars", 0.006, 0.02, [(line, 2, [0.0, 0.06, 0.0], False)]) + ("" if kind == "drop" else ties())
+            + pins(-0.02, 0.016) + hold()
+            + f'\n[[wall]]\nname = "hammer"\nshape = "cylinder"\npoint = [0.0, {WIDTH / 2 + 0.01}, {HEIGHT / 2 + NOSE + 0.0005:.4g}]\nnormal = [0.0, 1.0, 0.0]\n'
+            f'radius = {NOSE}\nlength = {WIDTH + 0.02:.4g}\nmass = {HAMMER}\nfree = ["z"]\nvelocity = [0.0, 0.0, {-float(speed)}]\n'
+            + probe("load", "hammer", "force_z", "sum") + probe("hammer_speed", "hammer", "velocity_z", "mean")
+            + "".join(probe(n, n, "force_z", "sum") for n in ("left", "right"))
+            + motion("way", "concrete", middle) + motion("bars_way", "bars", middle)
+            + motion("left_way", "concrete", ends[0]) + motion("right_way", "concrete", ends[1])
+            + probe("bonds", "bars", "broken", "sum"))
+
+
 def strong_beam(seed, elements, stirrups, wide=False):
     """Bars of 16 mm, bent upwards behind the supports, which bear the beam below them."""
     y = 0.03
@@ -145,24 +188,36 @@ def strong_beam(seed, elements, stirrups, wide=False):
     return text + box((1.0, WIDTH, HEIGHT), elements) + cage + loads(-0.0665, 0.014, 0.066, wide)
 
 
-def loads(pins, diameter, roller, wide=False):
-    """Pins across the beam, which let its ends turn, a bar across it, which presses it, and probes.
-    @param pins, roller  their heights  [m]
+def pins(height, diameter):
+    """Pins across the beam, which let its ends turn."""
+    lines = [([[x, -0.042, height], [x, 0.042, height]], 1, [0.0, 0.0, 0.0], False) for x in (-SPAN / 2, SPAN / 2)]
+    return bars("pins", diameter, 0.02, lines)
+
+
+def hold():
+    return "".join(support(name, "pins", (x - 0.01, -1, -1), (x + 0.01, 1, 1), '["z"]') for name, x in (("left", -SPAN / 2), ("right", SPAN / 2)))
+
+
+def loads(height, diameter, roller, wide=False):
+    """Pins, a bar across the beam, which presses it, and probes.
+    @param height, roller  of the pins, of that bar  [m]
     @param wide  three bars side by side instead of one"""
-    lines = [([[x, -0.042, pins], [x, 0.042, pins]], 1, [0.0, 0.0, 0.0], False) for x in (-SPAN / 2, SPAN / 2)]
-    text = bars("pins", diameter, 0.02, lines)
+    text = pins(height, diameter)
     first, copies, half = (-ARM, 3, 0.05) if wide else (0.0, 1, 0.01)
     text += bars("roller", 0.016, 0.02, [([[first, -0.042, roller], [first, 0.042, roller]], copies, [abs(first), 0.0, 0.0], False)])
-    for name, x in (("left", -SPAN / 2), ("right", SPAN / 2)):
-        text += support(name, "pins", (x - 0.01, -1, -1), (x + 0.01, 1, 1), '["z"]')
-    text += support("load", "roller", (-half, -1, -1), (half, 1, 1), '["z"]', (0, 0, -0.15), 2e-3)
+    text += hold() + support("load", "roller", (-half, -1, -1), (half, 1, 1), '["z"]', (0, 0, -0.15), 2e-3)
     return text + "".join(probe(n, n, "force_z", "sum") for n in ("load", "left", "right")) + probe("way", "load", "displacement_z", "mean")
 
 
 USUAL = {"pull_out": 1080, "bending": 3900, "flow": 3900, "shear": 3900, "stirrups": 3900, "plate": 3900}  # elements
 TESTS = {"pull_out": pull_out, "bending": beam, "flow": lambda s, n: beam(s, n).replace('hardening = "1 GPa"', 'hardening = "1 MPa"'),
          "shear": lambda s, n: strong_beam(s, n, False), "stirrups": lambda s, n: strong_beam(s, n, True),
-         "plate": lambda s, n: strong_beam(s, n, True, True)}
+         "plate": lambda s, n: strong_beam(s, n, True, True), "tied": tied}
+SPEEDS = {1: 18e-3, 2: 26e-3, 3: 32e-3, 4: 40e-3}  # of the hammer  [m/s]: time of the run  [s]
+STRUCK = {"drop": "no stirrups", "tied": "stirrups", "ductile": "stirrups, bars that break at 20 %"}
+DROPS = [f"{name}_{speed}" for name in STRUCK for speed in SPEEDS]
+TESTS |= {name: lambda s, n, name=name: drop(s, n, name[:-2], int(name[-1])) for name in DROPS}
+USUAL |= {name: 3900 for name in ("tied", *DROPS)}
 
 
 # f_c of `breccia test` with elements of these sizes (600, 2,400 and 4,800 in the prism; the last by interpolation)  [MPa]
@@ -256,6 +311,12 @@ def measured(name, folder):
         stress = smooth([abs(r["pull"]) / surface * 1e-6 for r in table], 5)
         k = max(range(len(table)), key=stress.__getitem__)
         return {"largest": stress[k], "way": 1e3 * abs(table[k]["end"]), "left": stress[-6], "end": 1e3 * abs(table[-1]["end"])}
+    if name in DROPS:  # supports push up with less than nothing where inertia lifts the ends
+        support = [-1e-3 * (r["left"] + r["right"]) for r in table]
+        deflection = [1e3 * (0.5 * (r["left_way"] + r["right_way"]) - r["way"]) for r in table]
+        return {"force": 1e-3 * max(abs(r["load"]) for r in table), "reaction": max(support), "lift": -min(support), "way": max(deflection),
+                "left": statistics.mean(d for d, r in zip(deflection, table) if r["time"] > table[-1]["time"] - 6e-3),
+                "speed": table[-1]["hammer_speed"], "bonds": table[-1]["bonds"]}
     load = smooth([0.5 * (abs(r["load"]) + abs(r["left"] + r["right"])) * 1e-3 for r in table])
     k = max(range(len(table)), key=load.__getitem__)
     return {"largest": load[k], "way": 1e3 * abs(table[k]["way"]), "left": load[-30], "end": 1e3 * abs(table[-1]["way"])}
@@ -280,16 +341,78 @@ def collected():
         if not (OUT / case.stem / "summary.json").exists():
             continue
         summary = json.loads((OUT / case.stem / "summary.json").read_text())
+        if summary["status"] == "interrupted":
+            continue
         of = {"test": name, "elements": (elements or [str(USUAL[name])])[0], "seed": seed,
               "commit": summary["breccia"]["commit"], "device": summary["machine"]["device"], "hash": summary["state_hash"]}
-        for quantity, value in measured(name, OUT / case.stem).items():
+        found = measured(name, OUT / case.stem)
+        if name in DROPS:
+            found["steel"] = summary["fracture"]["broken_by_kind"]["steel"]
+        for quantity, value in found.items():
             yield {**of, "quantity": quantity, "value": f"{value:.9g}"}
 
 
-def markdown(records):
+def merged(path, records):
+    """Lines of the file of other runs, then these."""
+    if not path.exists():
+        return records
+    run = ("test", "elements", "seed")
+    here = {tuple(one[k] for k in run) for one in records}
+    with open(path, newline="") as file:
+        return [one for one in csv.DictReader(file) if tuple(one[k] for k in run) not in here] + records
+
+
+def gathered(records):
+    """{(test, elements): {quantity: values}}"""
     found = {}
     for one in records:
         found.setdefault((one["test"], one["elements"]), {}).setdefault(one["quantity"], []).append(float(one["value"]))
+    return found
+
+
+def plastic_collision(speed, load):
+    """Greatest deflection of a beam that bears no more than `load`, struck by the hammer, mm: both go on as one (17/35 of the mass between the supports moves
+    as the middle does), and what energy is left bends the beam, elastically first, with cracked concrete (48 E I / L^3)."""
+    struck = 17 / 35 * 2400 * WIDTH * HEIGHT * SPAN
+    energy = HAMMER * speed**2 / 2 * HAMMER / (HAMMER + struck)
+    n, rho = 200 / 30, area(0.006) / (WIDTH * DEPTH)
+    x = DEPTH * (math.sqrt(2 * n * rho + (n * rho) ** 2) - n * rho)
+    stiffness = 48 * 30e9 * (WIDTH * x**3 / 3 + n * area(0.006) * (DEPTH - x) ** 2) / SPAN**3
+    elastic = math.sqrt(2 * energy / stiffness)
+    return 1e3 * (elastic if elastic * stiffness < load else energy / load + load / (2 * stiffness))
+
+
+def drops(records):
+    """Table of the hammers: forces; deflections of beams that stop it, beside those of two formulas with the load that the beam bears pressed slowly; none where
+    that is missing."""
+    found = gathered(records)
+    lines = ["| beam; hammer | stop it | pieces of bars that break | force of the hammer; of both supports; of their lift [kN] | greatest deflection [mm] | "
+             "plastic collision | 0.63 E_k / P_s | left [mm] | 0.42 E_k / P_s | hammer leaves at [m/s] |", "|---" * 10 + "|"]
+    for name in DROPS:
+        for size, values in sorted((int(size), values) for (test, size), values in found.items() if test == name):
+            kind, speed = name[:-2], int(name[-1])
+            slowly = found.get(("bending" if kind == "drop" else "tied", str(size)))
+            if not slowly:
+                continue
+            load = statistics.mean(slowly["largest"])
+            slow = HAMMER * speed**2 / 2 / load
+            stop = [i for i, v in enumerate(values["speed"]) if v > 0]
+
+            def here(quantity, digits=1):
+                return text([values[quantity][i] for i in stop], digits) if stop else "-"
+
+            def over(quantity, formula):
+                misfit = f", {100 * (statistics.mean(values[quantity][i] for i in stop) / formula - 1):+.0f} %" if stop else ""
+                return f"{formula:.1f}{misfit}"
+            kept = f"{here('left')} | {over('left', 0.42 * slow)}" if kind != "drop" else "- | -"
+            lines.append(f"| {STRUCK[kind]}, {size:,}; {speed} m/s | {len(stop)} of {len(values['speed'])} | {', '.join(f'{v:.0f}' for v in values['steel'])} | "
+                         f"{text(values['force'], 0)}; {text(values['reaction'], 0)}; {text(values['lift'], 0)} | {here('way')} | "
+                         f"{over('way', plastic_collision(speed, 1e3 * load))} | {over('way', 0.63 * slow)} | {kept} | {here('speed', 2)} |")
+    return "\n".join(lines)
+
+
+def markdown(records):
+    found = {key: values for key, values in gathered(records).items() if key[0] not in DROPS}
     lines = ["| test | elements | n | here | formula | misfit |", "|---|---|---|---|---|---|"]
     for (name, elements), values in sorted(found.items(), key=lambda item: (list(TESTS).index(item[0][0]), int(item[0][1]))):
         lines.append(f"| {name.replace('_', '-')} | {int(elements):,} | {len(values['largest'])} | {shown(name, values)} | {asked(name, int(elements))} | "
@@ -301,7 +424,7 @@ def against(name, elements):
     """What the misfit is from: bond stress, yield of slender bars, mean of tests in shear, crushing beside bars that yield."""
     if name == "pull_out":
         return 13.7
-    if name in ("bending", "flow"):
+    if name in ("bending", "flow", "tied"):
         return flexure(0.006) * 1e-3
     if name == "plate":
         return crushing(STRENGTH[elements], arm=SPAN / 2 - ARM) * 1e-3
@@ -311,7 +434,7 @@ def against(name, elements):
 def asked(name, elements):
     if name == "pull_out":
         return f"Model Code 1990 (confined, good bond): 13.7 MPa from 1 to 3 mm; Model Code 2010: 2.5 sqrt(f_cm) = {2.5 * math.sqrt(F_C):.1f} MPa"
-    if name in ("bending", "flow"):
+    if name in ("bending", "flow", "tied"):
         return f"A_s f_y z: {flexure(0.006) * 1e-3:.1f} kN"
     strength = STRENGTH[elements]
     if name == "plate":
@@ -341,20 +464,21 @@ def run(name, seed, given):
 
 def main():
     p = argparse.ArgumentParser()
-    p.add_argument("names", nargs="*", default=list(TESTS))
+    p.add_argument("names", nargs="*", default=[name for name in TESTS if name not in DROPS] + ["drop"])
     p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
     p.add_argument("--seeds", type=int, default=3)
     p.add_argument("--elements", type=int, default=0)
     p.add_argument("--device", default="cpu")
     p.add_argument("--jobs", type=int, default=1)
-    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all finished runs, as docs/results/reinforced.csv")
+    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all finished runs, as docs/results/reinforced.csv; what it has of others stays")
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
-    published_runs.run_all(given.jobs, run, [(n, s, given) for n in given.names for s in range(1, given.seeds + 1)])
+    names = [one for n in given.names for one in (DROPS if n == "drop" else [n])]
+    published_runs.run_all(given.jobs, run, [(n, s, given) for n in names for s in range(1, given.seeds + 1)])
     records = list(collected())
-    print(markdown(records))
+    print(markdown(records), drops(records), sep="\n\n")
     if given.record:
-        published_runs.write_record(given.record, RECORD, records)
+        published_runs.write_record(given.record, RECORD, merged(given.record, records))
 
 
 if __name__ == "__main__":
