@@ -1,8 +1,10 @@
-"""Breccia and a peer on the same slab, in alternating windows on the same machine.
+"""Breccia and a peer on the same slab, in alternating windows on the same machine, or Breccia and MUSEN and DEM-Engine in one table.
 
 Usage: compare.py BRECCIA yade|lammps [--program PEER] [-o RESULT.json] [--threads 1,2] [--windows N]
+       compare.py BRECCIA table [--musen CMUSEN] [--musen-devices gpu,cpu] [--dem-engine PROGRAM] [--device cuda] [--threads N]
+                          [--repeat N] [--limit SECONDS] [--copies N] [--slab FOLDER] [-o RESULT.json]
 
-A window is a number of whole steps of one program while the other ones wait. The ratio of two neighbouring
+The table runs the programs one after the other (table.py); BRECCIA may be `none` where --slab gives what it exports. Otherwise a window is a number of whole steps of one program while the other ones wait. The ratio of two neighbouring
 windows is what counts: the speed of a shared machine changes from minute to minute.
 """
 import argparse
@@ -16,6 +18,7 @@ import subprocess
 import tempfile
 
 import lammps_slab
+import table
 
 HERE = pathlib.Path(__file__).resolve().parent
 RESULTS = HERE.parent / "results"
@@ -168,24 +171,56 @@ def compare(programs, peer, links):
     return result
 
 
+def export(breccia, folder):
+    """The slab as elements.csv, links.csv and dt.txt. @returns what Breccia says of it"""
+    scene = breccia.ask(f"export {folder}")
+    (folder / "dt.txt").write_text(repr(scene["dt"]))
+    return scene
+
+
+def one_table(given):
+    """Breccia, MUSEN and DEM-Engine in one table."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = given.slab or pathlib.Path(scratch)
+        if not given.slab:
+            breccia = start_breccia(given.breccia, 1)
+            export(breccia, folder)
+            breccia.end()
+        rows = table.measure(given, folder, pathlib.Path(scratch))
+    if given.output:
+        result = {"date": datetime.date.today().isoformat(), "load": os.getloadavg(), "rows": rows}
+        pathlib.Path(given.output).write_text(json.dumps(result, indent=2) + "\n")
+
+
 def main():
     options = argparse.ArgumentParser()
     options.add_argument("breccia")
-    options.add_argument("peer", choices=sorted(START))
+    options.add_argument("peer", choices=[*sorted(START), "table"])
     options.add_argument("--program", help="of the peer; default: its usual name")
-    options.add_argument("-o", "--output", help="default: bench/results/PEER_slab.json")
-    options.add_argument("--threads", default="1,2")
+    options.add_argument("-o", "--output", help="default: bench/results/PEER_slab.json, none for the table")
+    options.add_argument("--threads", help="default: 1,2; of MUSEN on a CPU: 1")
     options.add_argument("--windows", type=int, default=7, choices=range(1, 8))
+    of_table = options.add_argument_group("table")
+    of_table.add_argument("--musen", help="CMUSEN, as musen.sh builds it")
+    of_table.add_argument("--musen-devices", default="gpu", help="gpu, cpu, or both with a comma")
+    of_table.add_argument("--dem-engine", help="dem_engine_slab, as dem_engine.sh builds it")
+    of_table.add_argument("--device", default="cuda", help="of Breccia")
+    of_table.add_argument("--repeat", type=int, default=3)
+    of_table.add_argument("--limit", type=float, default=3600, help="no run begins after so many seconds")
+    of_table.add_argument("--copies", type=int, default=1, help="slabs side by side")
+    of_table.add_argument("--slab", type=pathlib.Path, help="folder with elements.csv, links.csv, dt.txt")
     given = options.parse_args()
-    counts = [int(n) for n in given.threads.split(",")]
+    if given.peer == "table":
+        given.threads = given.threads or "1"
+        return one_table(given)
+    counts = [int(n) for n in (given.threads or "1,2").split(",")]
 
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
         programs = []
         for threads in counts:
             breccia = start_breccia(given.breccia, threads)
-            scene = breccia.ask(f"export {folder}")
-            (folder / "dt.txt").write_text(repr(scene["dt"]))
+            scene = export(breccia, folder)
             programs += [breccia, START[given.peer](given.program, folder, threads)]
         links = scene["links"]
         peer = programs[1]
