@@ -341,7 +341,7 @@ def collected():
         if not (OUT / case.stem / "summary.json").exists():
             continue
         summary = json.loads((OUT / case.stem / "summary.json").read_text())
-        if summary["status"] == "interrupted":
+        if summary["status"] in ("interrupted", "running"):  # a limit of time ended it
             continue
         of = {"test": name, "elements": (elements or [str(USUAL[name])])[0], "seed": seed,
               "commit": summary["breccia"]["commit"], "device": summary["machine"]["device"], "hash": summary["state_hash"]}
