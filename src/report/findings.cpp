@@ -385,6 +385,10 @@ class Findings {
     const double share = best->values.back() / peak;
     std::string text = fmt::format("{} was {} at its strongest, at {}", best->name,
                                    value_text(peak, best->unit), time_text(time->values[row]));
+    if (const auto beside = if_alone(best->values, row))
+      text += fmt::format(
+          ", in one row alone ({} in those beside it; a probe with lag follows the mean of blows)",
+          value_text(*beside, best->unit));
     if (row + 1 == best->values.size())
       text += ", at the end of the run: it may have risen further";
     else if (share < 0.0005)
@@ -392,6 +396,14 @@ class Findings {
     else
       text += fmt::format("; {} of it is left at the end", percent_text(share));
     return text + ".";
+  }
+
+  /// Of many values the larger one of those beside this one, if it is less than half of this one:
+  /// corners that hit each other press on the stiffness of contact for a moment.
+  static std::optional<double> if_alone(const std::vector<double>& values, std::size_t row) {
+    if (values.size() < 20 || row == 0 || row + 1 == values.size()) return std::nullopt;
+    const double beside = std::max(std::abs(values[row - 1]), std::abs(values[row + 1]));
+    return beside < 0.5 * std::abs(values[row]) ? std::optional(beside) : std::nullopt;
   }
 
   /// The first frame with broken lines, by bisection: lines do not heal.

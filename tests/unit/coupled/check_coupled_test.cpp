@@ -98,6 +98,11 @@ TEST(CheckCoupled, finds_what_is_wrong_by_key) {
   EXPECT_TRUE(has(problems_of(good, "\"fdem3d\"]", "\"fdem2d\"]"), "method: of two methods"));
   EXPECT_TRUE(has(problems_of(good, "on = \"pile\"", "on = \"heap\""),
                   "probe.down.on = \"heap\": name a body"));
+  // Probes stand above both methods: what one of these says of a probe has the probe's own key.
+  const std::string stress =
+      problems_of(good, "\"velocity_z\"",
+                  "\"stress_zz\"\nmin = [-0.01, -0.01, 0.01]\nmax = [0.01, 0.01, 0.02]");
+  EXPECT_TRUE(has(stress, "\n  probe.down.on: the stress of spheres")) << stress;
   EXPECT_TRUE(has(problems_of(good, "name = \"block\"", "name = \"pile\""),
                   "tetrahedra.body.pile: the name is taken"));
   EXPECT_TRUE(has(problems_of(good, "material = \"rock\"", "material = \"chalk\""),

@@ -40,6 +40,25 @@ TEST(Findings, ABrokenChainIsToldByWhatWhenAndWhere) {
       << text;
 }
 
+/// Corners of two bars that hit each other press on the penalty for a moment.
+TEST(Findings, APeakOfOneRowIsToldAsSuch) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  for (const double beside : {3.0, 70.0}) {
+    std::string rows = "step,time,push\n-,s,N\n";
+    for (int i = 0; i < 30; ++i) {
+      const double value = i == 12 ? 100.0 : i == 11 || i == 13 ? beside : 1.0;
+      rows += fmt::format("{},{},{}\n", i, 1e-3 * i, value);
+    }
+    test::write_text(folder.path() + "/history.csv", rows);
+    const std::string text = joined(findings_of(read_record(folder.path())));
+    EXPECT_NE(text.find("push was 100 N at its strongest, at 12 ms"), std::string::npos) << text;
+    EXPECT_EQ(text.find("in one row alone (3 N in those beside it") != std::string::npos,
+              beside < 50.0)
+        << text;
+  }
+}
+
 TEST(Findings, ListsOfBrokenLinksTellWhenMoreCloselyThanFrames) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
