@@ -7,6 +7,7 @@
 #   - CUDA 13 no longer tells two properties of a GPU: blocks have 512 threads, as MUSEN chooses on GPUs with fast double precision
 #   - device code is C++17, as CUDA's own headers ask for, and they lie one folder deeper (cccl)
 #   - it is compiled for one ARCHITECTURE alone (90: H100 and H200)
+#   - Thrust's names hold the GPU architectures, which nvcc alone tells: files of other compilers are told them, too, or do not link
 #   - of its models those of musen_slab.py alone are built, which halves the time
 # Needs CUDA, protobuf and zlib (Debian: protobuf-compiler, libprotobuf-dev, zlib1g-dev).
 set -euo pipefail
@@ -37,6 +38,6 @@ find "$copy/Models" -name '*.cpp' -o -name '*.cu' | grep -vE "/$kept\.c" | xargs
 export PATH=$PATH:/usr/local/cuda/bin
 headers=$(dirname "$(dirname "$(command -v nvcc)")")/include/cccl
 cmake -S "$copy" -B "$build" -DCMAKE_BUILD_TYPE=Release -DBUILD_GUI=OFF -DINSTALL_AUX_DATA=OFF -DCMAKE_POLICY_VERSION_MINIMUM=3.5 \
-  -DCMAKE_CXX_FLAGS="-isystem $headers" -DCMAKE_EXE_LINKER_FLAGS='-static-libstdc++ -static-libgcc'
+  -DCMAKE_CXX_FLAGS="-isystem $headers -D__CUDA_ARCH_LIST__=${architecture}0" -DCMAKE_EXE_LINKER_FLAGS='-static-libstdc++ -static-libgcc'
 cmake --build "$build" --parallel "$jobs"
 "$build/CMUSEN" -version
