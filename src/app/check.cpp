@@ -30,6 +30,7 @@
 #include "run/case_keys.hpp"
 #include "run/machine/forecast.hpp"
 #include "run/machine/memory_plan.hpp"
+#include "run/method/doubts.hpp"
 
 namespace breccia::app {
 namespace {
@@ -370,7 +371,7 @@ struct CheckCommand {
   }
   static void tell_warnings(Method& method, const Case& read) {
     std::fflush(stdout);
-    for (const std::string& warning : method.warnings()) {
+    for (const std::string& warning : doubts_of(method, read.common().time.end)) {
       const std::string text =
           fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
                       harmless(read.file.empty() ? warning : with_lines(warning, read.file)));

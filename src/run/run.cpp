@@ -15,6 +15,7 @@
 #include "io/whole_file.hpp"
 #include "run/machine/signals.hpp"
 #include "run/method/checks.hpp"
+#include "run/method/doubts.hpp"
 #include "run/results/messages.hpp"
 #include "run/results/tables.hpp"
 
@@ -53,30 +54,6 @@ class OutputTime {
 };
 
 }  // namespace
-
-void refuse_other_case(const CheckpointReader& checkpoint, const RunPlan& plan) {
-  const std::string precision =
-      checkpoint.has("run.precision") ? checkpoint.text("run.precision") : "double";
-  if (precision != plan.config.precision)
-    throw CheckpointError(
-        fmt::format("the checkpoint is of a run with precision = \"{}\", {} asks for \"{}\"",
-                    precision, plan.case_name, plan.config.precision));
-  if (checkpoint.text("run.model_digest") == plan.model_digest) return;
-  throw CheckpointError(
-      fmt::format("the checkpoint is of another case than {}: bodies, materials, links, loads and "
-                  "[time] safety must be the same, and so must the keys that the program knows",
-                  plan.case_name));
-}
-
-RunState::RunState(const CheckpointReader& checkpoint)
-    : step(checkpoint.value<std::int64_t>("run.step")),
-      time(checkpoint.value<double>("run.time")),
-      dt_min(checkpoint.value<double>("run.dt_min")),
-      dt_max(checkpoint.value<double>("run.dt_max")),
-      end_time(checkpoint.value<double>("run.end_time")),
-      end_steps(checkpoint.value<std::int64_t>("run.end_steps")) {
-  record.load(checkpoint);
-}
 
 Run::Run(Method& method, const RunPlan& plan, const ResultFolder* folder, const RunState* former)
     : method_(method),
@@ -143,7 +120,9 @@ int Run::execute_together() {
 
 void Run::start() {
   setup_ = seconds_since(plan_.begin);
-  for (const std::string& warning : method_.warnings()) warnings_.push_back(warning);
+  const bool to_end = !plan_.limits.time && !plan_.limits.steps;
+  for (const std::string& doubt : doubts_of(method_, to_end ? plan_.config.time.end : 1e300))
+    warnings_.push_back(doubt);
   const Summary now = summary();
   on_first(plan_.ranks, [&] {
     write_summary(now);
@@ -152,7 +131,7 @@ void Run::start() {
                 fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
                             method_.time()));
     say(opening_text(now, end_time_, end_steps_, folder_->path()));
-    for (const std::string& warning : warnings_) log_->warn("setup", method_.steps(), warning);
+    for (const std::string& warning : warnings_) log_->warn_once("setup", method_.steps(), warning);
   });
   method_.verify();
   if (recorder_.due(method_.time(), method_.steps())) observe();

@@ -2,12 +2,16 @@
 
 #include <fmt/chrono.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <sstream>
 
 #include "exec/no_memory.hpp"
 #include "io/emphasis.hpp"
 #include "io/fold.hpp"
 #include "io/json.hpp"
+#include "io/whole_file.hpp"
 
 namespace breccia {
 namespace {
@@ -33,7 +37,23 @@ std::string time_stamp() {
                      fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)), milliseconds);
 }
 
+std::vector<std::string> warnings_in(const std::string& path) {
+  std::vector<std::string> found;
+  if (!std::filesystem::exists(path)) return found;
+  const NeedsMemory scope;
+  std::istringstream lines(read_whole_file(path));
+  for (std::string line; std::getline(lines, line);) {
+    const Json parsed = read_json(line);
+    if (parsed.is_object() && parsed.value("level", "") == word(Level::warning))
+      found.push_back(parsed.value("message", ""));
+  }
+  return found;
+}
+
 }  // namespace
+
+Log::Log(const std::string& path, std::FILE* echo)
+    : told_(warnings_in(path)), file_(path), echo_(echo) {}
 
 void Log::write(Level level, const std::string& stage, std::int64_t step,
                 const std::string& message,
@@ -57,6 +77,10 @@ void Log::warn(const std::string& stage, std::int64_t step, const std::string& m
   const std::string text = fmt::format(
       "{} step {}: {}\n", emphasized(Emphasis::warning, "warning:", stderr), step, message);
   std::fputs(fitting(text, 2, stderr).c_str(), stderr);
+}
+
+void Log::warn_once(const std::string& stage, std::int64_t step, const std::string& message) {
+  if (std::find(told_.begin(), told_.end(), message) == told_.end()) warn(stage, step, message);
 }
 
 void Log::cut_to(const std::string& path, std::int64_t step) {

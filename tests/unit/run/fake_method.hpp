@@ -136,7 +136,7 @@ class FakeMethod : public Method {
   State position_{1.0, -0.5, 0.25, 0.125};
   State velocity_{};
   double force_ = 0.0, mass_ = 1.0;
-  double time_ = 0.0, last_step_ = 0.0;
+  double time_ = 0.0, last_step_ = dt;
   std::int64_t steps_ = 0;
 };
 

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "exec/error.hpp"
+#include "run/method/doubts.hpp"
 #include "unit/run/fake_run.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -66,6 +67,41 @@ TEST(Run, TellsWhatSetUpFindsDoubtful) {
         << log;
   EXPECT_EQ(run_fake(fake_plan(), scratch / "quiet"), 0);
   EXPECT_FALSE(summary_of(scratch / "quiet").contains("warnings"));
+}
+
+/// Whoever goes on was told at the start.
+TEST(Run, ThatGoesOnTellsNoDoubtTwice) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.warnings = {"edges are long"};
+  RunPlan half = plan;
+  half.limits.steps = 50;
+  EXPECT_EQ(run_fake(half, scratch / "out"), 0);
+  plan.warnings.emplace_back("frames are far apart");
+  EXPECT_EQ(resume_fake(plan, scratch / "out"), 0);
+  EXPECT_EQ(summary_of(scratch / "out")["warnings"], nlohmann::json(plan.warnings));
+  const std::string log = read_whole_file(scratch / "out/log.jsonl");
+  for (const std::string& doubt : plan.warnings) {
+    const auto first = log.find(doubt);
+    EXPECT_NE(first, std::string::npos) << log;
+    EXPECT_EQ(log.find(doubt, first + 1), std::string::npos) << log;
+  }
+}
+
+/// Steps are not cut, so a run of a few goes well beyond its end.
+TEST(Run, TellsThatItsStepsAreLong) {
+  EXPECT_EQ(long_step_text(1.99e-3, 0.1), "");
+  EXPECT_EQ(long_step_text(0.25e-3, 5e-3),
+            "time.end: a step of 250 us is 5 % of 5 ms, and the last one may pass the end by as "
+            "much; time.max_step = \"50 us\" makes a hundred of the run");
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.time.end = 0.4;
+  EXPECT_EQ(run_fake(plan, scratch / "out"), 0);
+  EXPECT_EQ(summary_of(scratch / "out")["warnings"].size(), 1U);
+  plan.limits.steps = 10;  // it does not go to its end
+  EXPECT_EQ(run_fake(plan, scratch / "part"), 0);
+  EXPECT_FALSE(summary_of(scratch / "part").contains("warnings"));
 }
 
 TEST(Run, EndsAtTheFirstStepAtOrPastItsEnd) {
