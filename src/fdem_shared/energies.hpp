@@ -63,30 +63,37 @@ struct JointShares {
 
   BR_HD void add_to(Energies& s, Index i) const {
     if (stage[i] == Stage::dormant) return;
-    const Work& spent = work[i];
+    const Work& taken = work[i];
     if (stage[i] == Stage::cut) {  // after that it took work out of the model
       const Work inherited = inherited_work[i];
       s.fracture.add(inherited.open);
       s.sliding.add(inherited.slide);
-      s.work.add(inherited.open - spent.open);
-      s.work.add(inherited.slide - spent.slide);
+      s.work.add(inherited.open - taken.open);
+      s.work.add(inherited.slide - taken.slide);
       return;
     }
-    // Of a whole joint it is what pressure has spent on its slip.
-    s.fracture.add(spent.open);
-    s.sliding.add(spent.slide);
     if (stage[i] == Stage::broken) {
       const Work inherited = inherited_work[i];
-      s.fracture.add(-inherited.open);
-      s.sliding.add(-inherited.slide);
+      s.fracture.add(taken.open - inherited.open);
+      s.sliding.add(taken.slide - inherited.slide);
       return;
     }
     const auto held = stored(i);
     s.elastic.add(held.open);
     s.elastic.add(held.slide);
-    if (stage[i] == Stage::whole) return;
-    s.fracture.add(-held.open);
-    s.sliding.add(-held.slide);
+    if (stage[i] == Stage::whole) {  // pressure took this on its slip, and gives it on the way back
+      s.elastic.add(taken.open);
+      s.elastic.add(taken.slide);
+      return;
+    }
+    const Work beyond{taken.open - held.open, taken.slide - held.slide};
+    const Work spent = beyond.spent();
+    s.fracture.add(spent.open);
+    s.sliding.add(spent.slide);
+    if (!(beyond.open + beyond.slide > 0.0)) {
+      s.elastic.add(beyond.open);
+      s.elastic.add(beyond.slide);
+    }
   }
 };
 

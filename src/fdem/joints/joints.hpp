@@ -59,6 +59,15 @@ struct JointWork {
   BR_HD JointWork within(const JointWork& most) const {
     return {min(open, most.open), min(slide, most.slide)};
   }
+  /// Of work beyond what a softened joint would give back, what it has spent: never less than
+  /// nothing of both together. One whose pressure has grown since it slipped would give back more
+  /// than it took up (docs/theory-fdem.md, 7).
+  BR_HD JointWork spent() const {
+    const double sum = open + slide;
+    if (!(sum > 0.0)) return {};
+    const double by_opening = max(0.0, min(open, sum));
+    return {by_opening, sum - by_opening};
+  }
 };
 
 /// Forces and work that a joint which breaks hands to the contact of its faces.

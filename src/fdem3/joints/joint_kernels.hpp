@@ -178,21 +178,17 @@ struct JointForces {
     f[1] = weight * (traction[1] + traction[0]);
     f[2] = weight * (traction[2] + traction[1]);
   }
-  /// Where a point softens, the other two let the faces turn about the line between them and run
-  /// into each other: the corner beyond that line presses in the place of what the point has lost,
-  /// no farther than the point is open.
-  /// @param slope  p_f / h  [Pa/m]  @returns the pressure of the corners  [N]
-  BR_HD static double press_corners(double slope, double area, const Vec3& normal,
-                                    const double (&open)[3], const JointPoints& state,
-                                    JointForce& f) {
+  /// @returns the pressure of the corners that press (PressedCorner)  [N]
+  BR_HD static double press_corners(const JointBond& bond, double h, double area,
+                                    const Vec3& normal, const double (&open)[3],
+                                    const JointPoints& state, JointForce& f) {
     double sum = 0.0;
     for (int q = 0; q < 3; ++q) {
-      const int corner = (q + 2) % 3;
-      const double depth = min(open[q], open[q] - open[(q + 1) % 3] - open[corner]);
+      const PressedCorner corner = PressedCorner::of(open, q);
       const double damage = state.point[q].damage;
-      if (!(damage > 0.0) || !(depth > 0.0)) continue;
-      const double pressed = corner_share * area * (1.0 - fdem::softening(damage)) * slope * depth;
-      f.at[corner] += pressed * normal;
+      if (!(damage > 0.0) || !corner.presses()) continue;
+      const double pressed = corner_spring(bond, h, area, damage) * corner.depth;
+      f.at[(q + 2) % 3] += pressed * normal;
       sum += pressed;
     }
     return sum;
@@ -342,7 +338,7 @@ struct JointForces {
     }
     JointForce now;
     share(traction, area, now.at);
-    if (damaged) pressure += press_corners(bond.stiffness / h, area, o.normal, open, state, now);
+    if (damaged) pressure += press_corners(bond, h, area, o.normal, open, state, now);
     force[i] = now;
     if (damaged) {
       book_work(i, o, way, last, force[i]);

@@ -142,6 +142,27 @@ inline InheritedWork works_inherited(const Joints& j) {
 /// stiffness of softened joints (StableStep).  [-]
 inline constexpr double corner_share = 1.0 / 12.0;
 
+/// Where a point softens, the other two let the faces turn about the line between them and run into
+/// each other: the corner beyond that line presses in the place of what the point has lost, no
+/// farther than the point is open.
+struct PressedCorner {
+  double depth;  ///< that counts; not above 0: it does not press  [m]
+  double work;   ///< of a spring of 1 N/m on the way there, for a point as open as this one  [J]
+
+  /// @param open  at the integration points  [m]  @param point  opposite the corner
+  BR_HD static PressedCorner of(const double (&open)[3], int point) {
+    const double far = open[point] - open[(point + 1) % 3] - open[(point + 2) % 3];
+    const double depth = min(open[point], far);
+    return {depth, depth * (far - 0.5 * depth)};
+  }
+  BR_HD bool presses() const { return depth > 0.0; }
+};
+
+/// @param damage  of the point  @returns stiffness  [N/m]
+BR_HD inline double corner_spring(const JointBond& bond, double h, double area, double damage) {
+  return corner_share * area * (1.0 - fdem::softening(damage)) * (bond.stiffness / h);
+}
+
 /// How far the two faces of a joint have moved apart.
 template <class R>
 struct JointOpeningOf {
@@ -197,11 +218,17 @@ BR_HD inline fdem::StoredEnergy stored_in(const JointBond& bond, double strength
                                           const JointPoints& points) {
   fdem::StoredEnergy sum{};
   const Vec3 slip = slip_in_space(o, preset);
+  double open[3];
+  for (int q = 0; q < 3; ++q) open[q] = o.open[q] + preset.x;
   for (int q = 0; q < 3; ++q) {
-    const fdem::StoredEnergy e = fdem::stored(bond, strength, h, o.open[q] + preset.x,
-                                              norm(o.slide[q] + slip), points.point[q]);
+    const fdem::StoredEnergy e =
+        fdem::stored(bond, strength, h, open[q], norm(o.slide[q] + slip), points.point[q]);
     sum.open += area / 3.0 * e.open;
     sum.slide += area / 3.0 * e.slide;
+    const double damage = points.point[q].damage;
+    if (!(damage > 0.0)) continue;
+    if (const PressedCorner corner = PressedCorner::of(open, q); corner.presses())
+      sum.open += corner_spring(bond, h, area, damage) * corner.work;
   }
   return sum;
 }

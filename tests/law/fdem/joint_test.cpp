@@ -186,7 +186,62 @@ TEST(Joint, books_what_pressure_takes_on_its_slip) {
     EXPECT_NEAR(given, taken, 2e-3 * taken);
     EXPECT_EQ(w.joints.work.data()[0].open, 0.0);
     EXPECT_EQ(w.joints.stage.data()[0], JointStage::whole);
+    // It gives that on the way back, so it counts as held.
+    const EnergyBalance b = energies(w).balance;
+    EXPECT_NEAR(b.elastic, taken, 1e-3 * taken);
+    EXPECT_EQ(b.fracture, 0.0);
+    go({s, 0.0});
+    go({s, p});
+    EXPECT_NEAR(booked(), 0.0, 1e-3 * taken);
+    EXPECT_EQ(energies(w).balance.fracture, 0.0);
   }
+}
+
+/// Slipped first and pressed then, a joint would give back more than it took up: as it softens it
+/// has spent nothing yet, not less than nothing. The modes count together.
+TEST(Joint, has_never_spent_less_than_nothing) {
+  const auto expect = [](const JointWork& beyond, double open, double slide) {
+    const JointWork spent = beyond.spent();
+    EXPECT_DOUBLE_EQ(spent.open, open);
+    EXPECT_DOUBLE_EQ(spent.slide, slide);
+  };
+  expect({3.0, 5.0}, 3.0, 5.0);
+  expect({0.0, -2.0}, 0.0, 0.0);
+  expect({1.0, -2.0}, 0.0, 0.0);
+  expect({3.0, -2.0}, 1.0, 0.0);
+  expect({-2.0, 3.0}, 0.0, 1.0);
+
+  World w = two_triangles().world();
+  const TriangleNodes start = nodes(w, 0);
+  Vec2 from{};
+  double least = 0.0, most = 0.0, taken = 0.0;
+  const auto go = [&](const Vec2& to) {
+    const int steps = 1000;
+    w.last_dt = 1e-8;
+    const Vec2 way = (1.0 / steps) * (to - from);
+    for (int i = 1; i <= steps; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        NodeState& n = nodes(w, 0).at[k];
+        n.velocity = (1.0 / w.last_dt) * way;
+        n.position = start.at[k].position + from + static_cast<double>(i) * way;
+      }
+      HostRun{}.joint_forces(w);
+      taken = std::min(taken, w.joints.work.data()[0].slide);
+      const double fracture = energies(w).balance.fracture;
+      least = std::min(least, fracture);
+      EXPECT_GE(fracture, (1.0 - 1e-9) * most);
+      most = std::max(most, fracture);
+    }
+    from = to;
+  };
+  const double slope = 150e9 / 1e-3, p = -40e6 / slope, s = 28e6 / slope;
+  go({s, 0.0});
+  go({s, p});
+  EXPECT_LT(taken, -1e-7);
+  go({15.0 * s, p});
+  EXPECT_EQ(w.joints.stage.data()[0], JointStage::softened);
+  EXPECT_GE(least, 0.0);
+  EXPECT_GT(most, 0.0);
 }
 
 TEST(Joint, two_of_three_failed_points_break_it) {

@@ -257,6 +257,38 @@ TEST(FaceJoint, holds_a_corner_out_of_the_other_face) {
   EXPECT_NEAR(joint.work().open + joint.work().slide, work, 1e-3 * work);
 }
 
+// The energy of a corner is the work of its force on the way into the other face: in proportion to
+// the depth until that is as far as the point is open, and the same from then on.
+TEST(FaceJoint, stores_what_its_corner_presses_with) {
+  const double open = 2e-6;
+  double work = 0.0, before = 0.0;
+  for (int i = 0; i <= 3000; ++i) {
+    const double far = 1e-9 * i, other = 0.5 * (open - far);
+    const PressedCorner corner = PressedCorner::of({open, other, other}, 0);
+    EXPECT_NEAR(corner.depth, std::min(far, open), 1e-15);
+    if (i > 0) work += 0.5 * (before + corner.depth) * 1e-9;
+    before = corner.depth;
+    EXPECT_NEAR(corner.work, work, 1e-16);
+  }
+  // A softened joint adds that to what its points hold; a whole one has no such spring.
+  const double area = 0.45 * mm * mm, h = 0.5 * mm;
+  const auto apart = [&](JointPoints points) {
+    const Vec3 up{0.0, 0.0, open};
+    const Vec3 b[3] = {{0.0, 0.0, 0.0}, {mm, 0.0, 0.0}, {0.2 * mm, 0.9 * mm, 0.0}};
+    const Vec3 a[3] = {b[0] + up, b[1] + up, b[2] - up};
+    JointOpening o = opening_of(a, b);
+    o.open[1] = o.open[2] = 0.0;  // but for rounding they are
+    return stored_in(bond(), 1.0, h, area, {}, o, points).open;
+  };
+  JointPoints points{};
+  const double whole = apart(points);
+  points.point[0].damage = 1.0;
+  points.point[0].opening = open;
+  const double spring = area / 12.0 * bond().stiffness / h;
+  EXPECT_NEAR(apart(points), 0.5 * spring * open * open, 1e-3 * spring * open * open);
+  EXPECT_LT(whole, 0.1 * apart(points));
+}
+
 TEST(FaceJoint, turns_its_forces_with_the_body) {
   const auto turned = [](const Vec3& v) {
     const double c = std::cos(0.7), s = std::sin(0.7);
