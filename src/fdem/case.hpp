@@ -31,7 +31,7 @@ struct NodeSet {
 };
 
 /// Of a fluid; its ports are vertices. Holes: border edges in the order in which they run around.
-using FluidSource = fdem_shared::GasSourceOf<LoadedEdge, std::vector<Index>>;
+using FluidSource = fdem_shared::GasSourceOf<LoadedEdge, std::vector<Index>, Vec2, 2>;
 
 using Bolt = fdem_shared::BoltOf<Vec2>;
 using FlowCase = fdem_shared::FlowCaseOf<LoadedEdge>;

@@ -48,7 +48,7 @@ struct EffectiveRock {
 };
 
 /// Of a fluid; its ports are edges.
-using FluidSource = fdem_shared::GasSourceOf<LoadedFace, HoleWall>;
+using FluidSource = fdem_shared::GasSourceOf<LoadedFace, HoleWall, Vec3, 3>;
 using Bolt = fdem_shared::BoltOf<Vec3>;
 using FlowCase = fdem_shared::FlowCaseOf<LoadedFace>;
 /// Two faces on each other that nothing joins, by global number.

@@ -39,6 +39,8 @@ void list_loaded(World& w);
 /// Volume per thickness of the holes of a source now, and of the cracks that its gas has filled.
 /// All ranks call it.  [m2]
 double gas_volume(World& part, const FluidSource& source);
+/// Keeps in a source where the walls of its holes are at the start.
+void note_walls(const World& part, FluidSource& source);
 
 /// Length that a fluid has filled, and the volume of it, per unit thickness, of the whole mesh.
 /// @param load  index into Config::loads

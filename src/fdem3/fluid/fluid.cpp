@@ -92,8 +92,11 @@ void list_loaded(World& w) {
   fdem_shared::list_all_loaded(w);
 }
 
+void note_walls(const World& part, FluidSource& source) {
+  fdem_shared::note_walls_of_gas(part, source);
+}
 double gas_volume(World& part, const FluidSource& source) {
-  return fdem_shared::volume_of_gas(part, source);
+  return fdem_shared::room_of_gas(part, source).volume;
 }
 
 fdem_shared::FilledPart filled_part(const World& whole, std::size_t load) {

@@ -35,6 +35,8 @@ void list_loaded(World& w);
 /// Volume of the holes of a source now, and of the cracks that its gas has filled. All ranks
 /// call it.  [m3]
 double gas_volume(World& part, const FluidSource& source);
+/// Keeps in a source where the walls of its holes are at the start.
+void note_walls(const World& part, FluidSource& source);
 
 /// Area that a fluid has filled, and the volume of it, of the whole mesh.
 /// @param load  index into Config::loads

@@ -8,14 +8,22 @@
 
 namespace breccia::fdem_shared {
 
+/// A side of the wall of a hole at the start.
+template <class Vector, int corners>
+struct WallSide {
+  Index side;          ///< of the whole mesh  [-]
+  Vector at[corners];  ///<  [m]
+};
+
 /// @tparam Side  that bears a load  @tparam Hole  its wall, as a method's sides make it
-template <class Side, class Hole>
+template <class Side, class Hole, class Vector, int corners>
 struct GasSourceOf : FluidSource {
   /// Of an explosive: the walls of its holes, and what bears its pressure there; else empty.
   std::vector<Hole> holes{};
   std::vector<Side> borders{};
   ExplosiveGas law{};
   double charge = 0.0;  ///< volume of the explosive, in the plane per thickness  [m3; in 2D m2]
+  std::vector<WallSide<Vector, corners>> start{};  ///< sides of its holes
 };
 
 /// Whether a case has explosives.

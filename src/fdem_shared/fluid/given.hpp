@@ -43,6 +43,13 @@ struct FlowCaseOf {
   }
 };
 
+/// A source of fluid that does not flow, now.
+struct SourceNow {
+  double pressure = 1.0;  ///< of gas of an explosive  [Pa]; else 1: the factor of what is given
+  double energy = 0.0;    ///< that gas holds, per volume of its explosive  [J/m3]
+  double pushed = 0.0;    ///< how far it has pushed its walls (GasRoom)  [m3; in 2D m2]
+};
+
 /// Where fluid presses on cracks: the same on all ranks.
 template <class Side, class Crack>
 struct FluidStateOf {
@@ -57,9 +64,7 @@ struct FluidStateOf {
   double released = 0.0;  ///< that left so far  [likewise]
   double pressure = 0.0;  ///< at its source  [Pa]
   double extent = 0.0;    ///< of cracks that a fluid that flows fills  [m; in space m2]
-  /// Factors of the sources' pressures: of explosives the pressure of the gas  [Pa], else 1; empty:
-  /// there are none.  (sources)
-  Buffer<double> gas;
+  Buffer<SourceNow> gas;  ///< of a case with explosives; else empty  (sources)
 };
 
 /// The part of the cracks that a fluid has filled.

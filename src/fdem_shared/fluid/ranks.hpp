@@ -27,8 +27,9 @@ void take_fluid(Communicator& ranks, const Case& given, State& fluid) {
   take_items(ranks, fluid.volume);
 }
 
-/// Pressures of gas. @param gas  empty where a case has none
-inline void take_gas(Communicator& ranks, Buffer<double>& gas) {
+/// @param gas  empty where a case has none
+template <class Source>
+void take_gas(Communicator& ranks, Buffer<Source>& gas) {
   if (gas.size() > 0) take_items(ranks, gas);
 }
 

@@ -43,7 +43,7 @@ Config with_gas_of_one(Config config) {
 }
 
 /// Lets the source that was added last be the gas of an explosive in these holes. The method says
-/// how large they are: gas_volume(w, source).
+/// how large they are: gas_volume(w, source), and notes their walls: note_walls(w, source).
 template <class World, class Load, class Hole, class Side>
 void set_up_gas(World& w, const Load& load, std::vector<Hole> holes,
                 const std::vector<Side>& borders) {
@@ -52,6 +52,7 @@ void set_up_gas(World& w, const Load& load, std::vector<Hole> holes,
   source.borders = borders;
   source.law = load.explosive.gas();
   source.charge = load.explosive.charge > 0.0 ? load.explosive.charge : gas_volume(w, source);
+  note_walls(w, source);
 }
 
 }  // namespace breccia::fdem_shared

@@ -118,6 +118,8 @@ struct MeshSim {
       const bool flows = w.given->flow.on && static_cast<std::size_t>(w.given->flow.load) == load;
       if (!flows) {
         add(path + "pressure", pressure_now(w, k));
+        if (const auto& source = w.given->fluids[k]; !source.holes.empty())
+          add(path + "energy", source.charge * w.fluid.gas.data()[k].energy);
         continue;
       }
       add(path + "injected", w.fluid.injected);
@@ -127,7 +129,7 @@ struct MeshSim {
   }
   /// Of a fluid that does not flow: as given, or that of gas.  [Pa]
   static double pressure_now(const World& w, std::size_t fluid) {
-    if (!w.given->fluids[fluid].holes.empty()) return w.fluid.gas.data()[fluid];
+    if (!w.given->fluids[fluid].holes.empty()) return w.fluid.gas.data()[fluid].pressure;
     const auto load = static_cast<std::size_t>(w.given->fluids[fluid].load);
     return w.given->load_amplitudes[load].at(w.time).x * w.given->loads[load].pressure;
   }
@@ -192,7 +194,8 @@ struct MeshSim {
   }
   template <class Visit>
   static void each_stored_gas(World& w, const Visit& visit) {
-    if (fdem_shared::has_gas(w)) visit.fields("gas", Loose<double>{"pressure", w.fluid.gas});
+    if (fdem_shared::has_gas(w))
+      visit.fields("gas", Loose<fdem_shared::SourceNow>{"sources", w.fluid.gas});
   }
   /// @param joint_forces  joint_forces(visit): forces of joints, in the precision of the run
   template <class Visit, class JointForces>

@@ -37,6 +37,17 @@ TEST(Explosive, holds_its_energy_at_first_and_gives_all_of_it) {
   EXPECT_LT(gas.energy(1e6), 0.02 * energy);
 }
 
+TEST(Explosive, has_the_pressure_of_its_volume_and_energy) {
+  for (const double v : {1.0, 2.0, 7.0, 60.0})
+    EXPECT_NEAR(gas.pressure(v, gas.energy(v)), gas.pressure(v), 1e-12 * gas.pressure(v)) << v;
+  const auto ideal = fdem_shared::ExplosiveGas::of(0.0, 0.0, r1, r2, omega, energy);
+  EXPECT_NEAR(ideal.pressure(3.0, energy), omega * energy / 3.0, 1e-12 * energy);
+}
+/// Entropy grows: what runs into empty room presses harder than what works on the way.
+TEST(Explosive, that_does_not_work_stays_hotter) {
+  for (const double v : {1.5, 4.0, 20.0}) EXPECT_GT(gas.pressure(v, energy), gas.pressure(v)) << v;
+}
+
 TEST(Explosive, is_an_ideal_gas_in_the_end) {
   EXPECT_NEAR(gas.pressure(200.0) / gas.pressure(100.0), std::pow(2.0, -1.0 - omega), 1e-12);
 }

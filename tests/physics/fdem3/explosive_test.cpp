@@ -10,6 +10,7 @@
 #include "core/servo.hpp"
 #include "exec/error.hpp"
 #include "fdem3/fluid/fluid.hpp"
+#include "fdem_shared/fluid/gas.hpp"
 #include "math/constants.hpp"
 #include "physics/fdem3/scene.hpp"
 
@@ -118,7 +119,7 @@ TEST(ExplosiveInSpace, that_fills_its_hole_begins_with_the_pressure_of_the_volum
   const World w = charged(shell(1), 0.0, 50e9).world();
   const double octahedron = 4.0 / 3.0 * inner * inner * inner;
   EXPECT_NEAR(w.given->fluids[0].charge, octahedron, 1e-12 * octahedron);
-  EXPECT_NEAR(w.fluid.gas.data()[0], gas.pressure(1.0), 1e-9 * gas.pressure(1.0));
+  EXPECT_NEAR(w.fluid.gas.data()[0].pressure, gas.pressure(1.0), 1e-9 * gas.pressure(1.0));
 }
 
 /// Moves those elements of an octahedron's wall that `moves` names by a way along (1, 1, 1), each
@@ -169,7 +170,7 @@ void expect_at_rest(Scene s, double end, double widening_of_one, const Widening&
   const EnergyBalance sum = energies(w).balance;
   EXPECT_LT(sum.kinetic, 1e-4 * sum.elastic);
   const double volume = gas_volume(w, w.given->fluids[0]) / charge;
-  const double pressure = w.fluid.gas.data()[0];
+  const double pressure = w.fluid.gas.data()[0].pressure;
   EXPECT_NEAR(pressure, gas.pressure(volume), 1e-3 * pressure);
   EXPECT_LT(pressure, 0.98 * gas.pressure(before));
   const double widening = pressure * widening_of_one;
@@ -177,6 +178,20 @@ void expect_at_rest(Scene s, double end, double widening_of_one, const Widening&
   const double given = charge * (gas.energy(before) - gas.energy(volume));
   EXPECT_NEAR(sum.work, given, 0.01 * given);
 }
+TEST(ExplosiveInSpace, pushes_a_closed_wall_by_the_volume_that_it_gains) {
+  const Vec3 from[4] = {{0.0, 0.0, 0.0}, {1.0, 0.2, 0.1}, {0.3, 0.9, -0.1}, {0.2, 0.3, 1.1}};
+  const Vec3 to[4] = {{-0.2, 0.1, 0.3}, {1.4, -0.3, 0.2}, {0.9, 1.8, -0.4}, {0.1, 0.5, 1.9}};
+  const auto volume = [](const Vec3(&x)[4]) {
+    return dot(x[3] - x[0], cross(x[1] - x[0], x[2] - x[0])) / 6.0;
+  };
+  const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  double swept = 0.0;
+  for (const auto& f : face)
+    swept +=
+        fdem_shared::swept({from[f[0]], from[f[1]], from[f[2]]}, {to[f[0]], to[f[1]], to[f[2]]});
+  EXPECT_NEAR(swept, volume(to) - volume(from), 1e-15);
+}
+
 constexpr double young = 2e9, nu = 0.2;
 
 TEST(ExplosiveInSpace, comes_to_rest_in_a_ball) {
