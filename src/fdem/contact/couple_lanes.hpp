@@ -19,9 +19,10 @@ struct EdgesSideBySide {
 
   /// As EdgesInTurn.
   template <class Visit>
-  void operator()(const ContactPair& law, double scale, const double (&drag)[6], double dt,
-                  const Vec2 (&xa)[3], const Vec2 (&va)[3], const Target& of_a, const Vec2 (&xb)[3],
-                  const Vec2 (&vb)[3], const Target& of_b, const Visit& visit) const {
+  void operator()(const ContactPair& law, double scale, double stiffness, const double (&drag)[6],
+                  double dt, const Vec2 (&xa)[3], const Vec2 (&va)[3], const Target& of_a,
+                  const Vec2 (&xb)[3], const Vec2 (&vb)[3], const Target& of_b,
+                  const Visit& visit) const {
     for (int first = 0; first < 6; first += at_once) {
       const auto lanes = [first](const auto& number) {
         if constexpr (at_once == 6)
@@ -48,7 +49,8 @@ struct EdgesSideBySide {
       }
       target.over_double = lanes([&](int e) { return (e < 3 ? of_b : of_a).over_double; });
       const R before = lanes([&](int e) { return drag[e]; });
-      const EdgePushOf<R> all = edge_push(law, scale, before, dt, from, to, target, target_v);
+      const EdgePushOf<R> all =
+          edge_push(law, scale, stiffness, before, dt, from, to, target, target_v);
       for (int k = 0; k < at_once; ++k) visit(first + k, lane(all, k));
     }
   }
@@ -69,6 +71,7 @@ struct EdgesSideBySide {
     p.drag = all.drag[k];
     p.taken = all.taken[k];
     p.sprung = all.sprung[k];
+    p.stiffness = all.stiffness[k];
     return p;
   }
 };

@@ -44,14 +44,15 @@ struct Rebound {
 
 /// State of a couple of triangles.
 struct CoupleState {
-  double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
-  double scale;    ///< of its normal penalty; 0: it is new  [-]
-  double work;     ///< taken up since it began to touch, friction included  [J/m]
-  double slid;     ///< the part of it that friction has spent  [J/m]
-  double sprung;   ///< the part of it that the springs of friction hold  [J/m]
-  double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
-  double rubbed;   ///< what friction spent in touches that have ended  [J/m]
-  double most;     ///< energy of its overlap since it began to touch, if contacts lose some  [J/m]
+  double drag[6];    ///< tangential force of a's edges through b, then of b's through a  [N/m]
+  double scale;      ///< of its normal penalty; 0: it is new  [-]
+  double stiffness;  ///< of its springs of friction, the greatest since it began to touch  [Pa]
+  double work;       ///< taken up since it began to touch, friction included  [J/m]
+  double slid;       ///< the part of it that friction has spent  [J/m]
+  double sprung;     ///< the part of it that the springs of friction hold  [J/m]
+  double lost;       ///< what was left of both when it parted: errors of integration  [J/m]
+  double rubbed;     ///< what friction spent in touches that have ended  [J/m]
+  double most;  ///< energy of its overlap since it began to touch, if contacts lose some  [J/m]
 };
 
 /// Forces of a couple on the corners of both triangles.  [N/m]
@@ -105,15 +106,13 @@ struct EdgePushOf {
   R drag{};                                    ///< what friction pulls with now  [N/m]
   R taken{};                                   ///< work that it has taken up in this step  [J/m]
   R sprung{};                                  ///< what its spring holds now  [J/m]
+  R stiffness{};                               ///< of its spring  [Pa]
 };
 using EdgePush = EdgePushOf<double>;
 
-/// Work that friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule
-/// where T acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge
-/// inside), but no more than they were given. The rest is spent. k goes with the edge: where it
-/// shrinks under a T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend
-/// what nobody put in. A spring that is forgotten has spent what it held; what one gives back
-/// beyond what it was given counts against what friction spends.  [J/m]
+/// Work that friction of a couple takes up in a step, by the trapezoidal rule, and what its springs
+/// hold after it: no more than they were given. The rest is spent, what a spring held that is
+/// forgotten, too.  [J/m]
 struct FrictionWork {
   double taken = 0.0, sprung = 0.0;
   BR_HD void add(double more_taken, double more_sprung) {
@@ -127,12 +126,22 @@ struct FrictionWork {
   }
 };
 
-/// @param scale  of the penalty  @param drag  what friction pulled with before  [N/m]
-/// @param dt     the step that led here  [s]
+/// Friction of an edge is a spring that pulls with T:
+///
+///   T <- T + k v_t dt, cut at mu N,   k = max(k, p_t x),   x the share of the edge that is inside
+///
+/// and holds T^2/(2 k). k never falls while the couple touches, and v_t is that where T acts: what
+/// the spring holds grows by just the work of T by the trapezoidal rule, and falls where T is cut
+/// or k grows. A k that fell with x would make T^2/(2 k) of nothing as the edge leaves, or T and
+/// the body with it give way.
+/// @param scale      of the penalty
+/// @param stiffness  of the couple's springs, the greatest before  [Pa]
+/// @param drag       what friction pulled with before  [N/m]
+/// @param dt         the step that led here  [s]
 template <class R, class End>
-BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, const R& drag, double dt,
-                                     const End& from, const End& to, const TargetOf<R>& target,
-                                     const Vec2Of<R> (&target_v)[3]) {
+BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, double stiffness,
+                                     const R& drag, double dt, const End& from, const End& to,
+                                     const TargetOf<R>& target, const Vec2Of<R> (&target_v)[3]) {
   EdgePushOf<R> p;
   EdgeOverlapOf<R>& o = p.overlap;
   p.touches = overlap_of_edge(from.position, to.position, target, o);
@@ -151,13 +160,14 @@ BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, const
     for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + s * (o.at_b[m] - o.at_a[m])) * target_v[m];
     return dot(rate, along);
   };
-  const R stiffness = law.tangential * (o.end - o.begin);
-  const R limit = law.friction * penalty * o.whole * size;
-  R pull = drag + stiffness * dt * rate_at(0.5 * (o.begin + o.end));
-  pull = select(abs(pull) > limit, select(pull < 0.0, -limit, limit), pull);
   const R share = o.moment / o.whole;
-  p.taken = 0.5 * dt * (drag + pull) * rate_at(share);
-  p.sprung = 0.5 * pull * pull / stiffness;
+  const R slip = dt * rate_at(share);
+  const R limit = law.friction * penalty * o.whole * size;
+  p.stiffness = max(constant<R>(stiffness), law.tangential * (o.end - o.begin));
+  R pull = drag + p.stiffness * slip;
+  pull = select(abs(pull) > limit, select(pull < 0.0, -limit, limit), pull);
+  p.taken = 0.5 * (drag + pull) * slip;
+  p.sprung = 0.5 * pull * pull / p.stiffness;
   p.friction[0] = (pull * (one - share)) * along;
   p.friction[1] = (pull * share) * along;
   p.drag = select(p.touches, pull, zero);
@@ -172,19 +182,19 @@ struct EdgesInTurn {
   BR_HD bool near(const Vec2 (&xa)[3], const Vec2 (&xb)[3]) const { return meet(xa, xb); }
   /// Calls visit(edge, push) for edges 0 to 2 of a in b, then for 3 to 5: those of b in a.
   template <class Visit>
-  BR_HD void operator()(const ContactPair& law, double scale, const double (&drag)[6], double dt,
-                        const Vec2 (&xa)[3], const Vec2 (&va)[3], const Target& of_a,
-                        const Vec2 (&xb)[3], const Vec2 (&vb)[3], const Target& of_b,
-                        const Visit& visit) const {
+  BR_HD void operator()(const ContactPair& law, double scale, double stiffness,
+                        const double (&drag)[6], double dt, const Vec2 (&xa)[3],
+                        const Vec2 (&va)[3], const Target& of_a, const Vec2 (&xb)[3],
+                        const Vec2 (&vb)[3], const Target& of_b, const Visit& visit) const {
     using End = EdgeEnd<double>;
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
-      visit(k, edge_push(law, scale, drag[k], dt, End{xa[k], va[k]}, End{xa[next], va[next]}, of_b,
-                         vb));
+      visit(k, edge_push(law, scale, stiffness, drag[k], dt, End{xa[k], va[k]},
+                         End{xa[next], va[next]}, of_b, vb));
     }
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
-      visit(3 + k, edge_push(law, scale, drag[3 + k], dt, End{xb[k], vb[k]},
+      visit(3 + k, edge_push(law, scale, stiffness, drag[3 + k], dt, End{xb[k], vb[k]},
                              End{xb[next], vb[next]}, of_a, va));
     }
   }
@@ -272,11 +282,13 @@ struct CoupleForces {
           scale *= now.share;
           kept.most = now.most;
         }
-      edges(law, scale, kept.drag, dt, xa, va, of_a, xb, vb, of_b,
+      double stiffness = 0.0;
+      edges(law, scale, kept.stiffness, kept.drag, dt, xa, va, of_a, xb, vb, of_b,
             [&](int edge, const EdgePush& p) {
               kept.drag[edge] = p.drag;
               if (!p.touches) return;
               touching = true;
+              stiffness = max(stiffness, p.stiffness);
               friction_work.add(p.taken, p.sprung);
               const bool of_own = edge < 3;
               auto& on_x = of_own ? sum.on_a.at : sum.on_b.at;
@@ -286,6 +298,7 @@ struct CoupleForces {
               if (law.friction > 0.0)
                 push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
             });
+      if (touching) kept.stiffness = stiffness;
       if constexpr (Edges::any_couple)
         if (touching && conservative) {
           const Polygon over = overlap_of(of_a, of_b);
@@ -310,7 +323,7 @@ struct CoupleForces {
     if (!touching) {
       kept.lost += kept.work - kept.slid;
       kept.rubbed += kept.slid;
-      kept.work = kept.slid = kept.most = 0.0;
+      kept.work = kept.slid = kept.most = kept.stiffness = 0.0;
       kept.scale = 1.0;
       for (double& drag : kept.drag) drag = 0.0;
     }
@@ -370,8 +383,9 @@ struct CoupleForces {
   }
 
   /// Gives a couple in overlap the forces that its faces carry, as far as friction bears them.
-  /// Springs of friction are softer than joints and would hold more at that force; the couple
-  /// stores what was held there, no more.
+  /// Springs of friction are softer than joints and would hold more at that force; they are as much
+  /// stiffer as it takes to store what was held there, but no stiffer than the penalty across. What
+  /// even that stores beyond is taken off the force: nobody has paid for it.
   /// @param edges  that lie on each other, of a and of b
   /// @returns what it stores then
   BR_HD static JointWork begin_pressed(const JointHandover& broken, const int (&edges)[2],
@@ -384,25 +398,26 @@ struct CoupleForces {
     JointWork given{penalty * (potential_integral(of_a, over) + potential_integral(of_b, over)),
                     0.0};
 
-    double limit[2] = {}, stiffness[2] = {};
+    double limit[2] = {}, inside = 0.0;
     for (int side = 0; side < 2; ++side) {
       const Vec2(&x)[3] = side == 0 ? xa : xb;
       const Vec2 &from = x[edges[side]], &to = x[(edges[side] + 1) % 3];
       EdgeOverlap o;
       if (!overlap_of_edge(from, to, side == 0 ? of_b : of_a, o)) continue;
       limit[side] = law.friction * penalty * o.whole * norm(to - from);
-      stiffness[side] = law.tangential * (o.end - o.begin);
+      inside = max(inside, o.end - o.begin);
     }
     // Along either edge, in its own direction, it is the same: both turn.
-    const double most = limit[0] + limit[1];
+    const double most = limit[0] + limit[1], held = broken.held.slide;
     if (most > 0.0) {
-      const double share = max(-1.0, min(1.0, broken.shear / most));
-      for (int side = 0; side < 2; ++side) {
-        if (!(stiffness[side] > 0.0)) continue;
-        const double drag = share * limit[side];
-        kept.drag[3 * side + edges[side]] = drag;
-        given.slide += 0.5 * drag * drag / stiffness[side];
-      }
+      double share = max(-1.0, min(1.0, broken.shear / most));
+      const double squares = share * share * (limit[0] * limit[0] + limit[1] * limit[1]);
+      kept.stiffness = law.tangential * inside;
+      if (0.5 * squares > held * kept.stiffness)
+        kept.stiffness = max(kept.stiffness, min(law.penalty, 0.5 * squares / held));
+      given.slide = 0.5 * squares / kept.stiffness;
+      if (given.slide > held) share *= sqrt(held / given.slide);
+      for (int side = 0; side < 2; ++side) kept.drag[3 * side + edges[side]] = share * limit[side];
     }
     given = given.within(broken.held);
     kept.work = given.open + given.slide;

@@ -91,7 +91,7 @@ struct CouplesWide {
 
   struct Loaded {
     Index a, b, parent_joint;
-    double scale, drag, work, slid, sprung;
+    double scale, stiffness, drag, work, slid, sprung;
     NodeState corner[3];  ///< of the own triangle, from the own one on
     NodeState other[3];
   };
@@ -114,6 +114,7 @@ struct CouplesWide {
     loaded.b = read_now(&all.b[c]);
     loaded.parent_joint = read_now(&all.parent_joint[c]);
     loaded.scale = read_now(&kept.scale);
+    loaded.stiffness = read_now(&kept.stiffness);
     loaded.drag = read_now(&kept.drag[Place(i).edge]);
     loaded.work = read_now(&kept.work);
     loaded.slid = read_now(&kept.slid);
@@ -164,6 +165,7 @@ struct CouplesWide {
         if (leads) cold_begin(&all, c);
         group.wait();
         loaded.scale = kept.scale;
+        loaded.stiffness = kept.stiffness;
         loaded.drag = kept.drag[place.edge];
         loaded.work = kept.work;
         loaded.sprung = kept.sprung;
@@ -177,12 +179,14 @@ struct CouplesWide {
         scale *= now.share;
         if (leads) kept.most = now.most;
       }
-      mine = edge_push(law, scale, loaded.drag, dt, loaded.corner[0], loaded.corner[1],
-                       Target::of(other), other_v);
+      mine = edge_push(law, scale, loaded.stiffness, loaded.drag, dt, loaded.corner[0],
+                       loaded.corner[1], Target::of(other), other_v);
       kept.drag[place.edge] = mine.drag;
       touching = group.ballot(mine.touches) & 0x3fU;
+      double stiffness = 0.0;
       for (int s = 0; s < 6; ++s) {
         if ((touching >> s & 1U) == 0) continue;
+        stiffness = max(stiffness, from(s, mine.stiffness));
         friction_work.add(from(s, mine.taken), from(s, mine.sprung));
         const double at_a[3] = {from(s, mine.overlap.at_a[0]), from(s, mine.overlap.at_a[1]),
                                 from(s, mine.overlap.at_a[2])};
@@ -204,6 +208,7 @@ struct CouplesWide {
         if (law.friction > 0.0)
           add(vector_from(s, mine.friction[0]), vector_from(s, mine.friction[1]));
       }
+      if (touching != 0 && leads) kept.stiffness = stiffness;
       if (touching != 0 && all.conservative)
         sum += cold_shape_force(&all, c, scale * law.penalty, place.of_a, place.of);
     }
@@ -231,7 +236,7 @@ struct CouplesWide {
         kept.lost += loaded.work - loaded.slid;
         kept.rubbed += loaded.slid;
         kept.scale = 1.0;
-        kept.most = 0.0;
+        kept.most = kept.stiffness = 0.0;
       }
       loaded.work = loaded.slid = 0.0;
     }
