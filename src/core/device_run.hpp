@@ -114,6 +114,37 @@ StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
   return count_steps(c, end, host, taken);
 }
 
+/// How long a step takes, by what the host sees of a device that runs ahead, and what follows from
+/// it: how many steps are launched before they have begun, and whether they are recorded.
+class RunningAhead {
+ public:
+  static constexpr std::int64_t few = 4;  ///< steps of a graph: even; its first clock is the last
+
+  /// Steps have begun after a halt.
+  void begin() { begun_ = Clock::now(); }
+  /// So many have been taken since.
+  void see(std::int64_t steps) {
+    if (steps >= few)
+      step_ =
+          std::chrono::duration<double>(Clock::now() - begun_).count() / static_cast<double>(steps);
+  }
+  /// Enough to bridge the host's absence; the fewer, the fewer are let pass after a halt.
+  std::int64_t ahead() const {
+    if (!(step_ > 0.0)) return most;
+    const double steps = std::ceil(absence / (step_ * few)) * few;
+    return steps < static_cast<double>(most) ? static_cast<std::int64_t>(steps) : most;
+  }
+  /// Where steps take longer than to launch them, a record pays only where it is repeated often.
+  bool records(std::int64_t launched) const { return step_ < slow_step || launched >= 64; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::int64_t most = 12;
+  static constexpr double absence = 2e-4, slow_step = 4e-5;  // [s]
+  Clock::time_point begun_;
+  double step_ = 0.0;  // [s]; 0: not known yet
+};
+
 /// Takes steps on a device until `stop`, or until about `slice` has passed.
 ///
 /// @param launch_step  launches all kernels of one step by its StepClocks; the first one is Opening
@@ -127,9 +158,8 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
                    const HostTimes& host, const StopAt& stop, const LaunchStep& launch_step,
                    const LaunchForcesOnly& launch_forces_only, const OnHalt& on_halt) {
   constexpr std::chrono::milliseconds slice{50};
-  constexpr std::int64_t few = 4;  // steps of a graph: even, so that the first clock is the last
   const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t ahead = LaunchTimes::wanted() ? 2 : 12;  // launched before they have begun
+  RunningAhead running;
   const auto late = [&] { return std::chrono::steady_clock::now() - begin > slice; };
   const bool shadow = clock.space() == Space::shadow;
   const auto launch_two = [&] {
@@ -146,25 +176,32 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
     if (open != 0) launch_forces_only(StepClocks{nullptr, clock.data()});
     const double needed = min(std::ceil((stop.time - host.time) / host.next_dt),
                               static_cast<double>(stop.step - host.step));
+    running.begin();
     for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
-      if (launched - seen < ahead) {
+      if (launched - seen < (LaunchTimes::wanted() ? 2 : running.ahead())) {
         if (LaunchTimes::wanted()) {  // a graph has none
           launch_two();
           if (!shadow) wait_for_device();
           launched += 2;
           continue;
         }
+        if (graph.empty() && !shadow && !running.records(launched)) {
+          launch_two();
+          launched += 2;
+          continue;
+        }
         if (graph.empty())
           graph.record(clock.space(), [&] {
-            for (std::int64_t i = 0; i < few; i += 2) launch_two();
+            for (std::int64_t i = 0; i < RunningAhead::few; i += 2) launch_two();
           });
         graph.replay();
-        launched += few;
+        launched += RunningAhead::few;
         continue;
       }
       StepClock c;
       peek_bytes(&c, clock.data(), clock.space(), sizeof c);
       seen = c.now.step - host.step;
+      running.see(seen);
       if (c.halted != 0 || late()) break;
     }
     launches.reset();

@@ -19,7 +19,7 @@
 #include "fdem/case.hpp"
 #include "fdem/setup/model.hpp"
 #include "fdem/triangles/loads.hpp"
-#include "fdem_shared/busy_couples.hpp"
+#include "fdem_shared/busy_items.hpp"
 #include "fdem_shared/exposed.hpp"
 #include "fdem_shared/rigid.hpp"
 #include "fdem_shared/stable_parts.hpp"
@@ -94,7 +94,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, busy.couple, busy.count, ringed, rows);
+         device_flags, busy.item, busy.count, busy_joints.item, busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -168,8 +168,9 @@ struct World {
   /// Of a move launched at once: 1 if margin_used, in one process if a search is due; on ranks bit
   /// k if flag k of ExposedVertices::changed is set. (2; move)
   Buffer<std::int32_t> device_flags;
-  fdem_shared::BusyCouples busy;  ///< of this step (search, derive; pairs, sums)
-  StepGraph graph;                ///< of a few steps (advance)
+  fdem_shared::BusyItems busy,
+      busy_joints;  ///< couples, joints of this step (search, derive; pairs, sums)
+  StepGraph graph;  ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.

@@ -19,7 +19,7 @@
 #include "fdem3/case.hpp"
 #include "fdem3/elements/stable_step.hpp"
 #include "fdem3/setup/model.hpp"
-#include "fdem_shared/busy_couples.hpp"
+#include "fdem_shared/busy_items.hpp"
 #include "fdem_shared/exposed.hpp"
 #include "fdem_shared/rigid.hpp"
 #include "fdem_shared/stable_parts.hpp"
@@ -74,7 +74,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, busy.couple, busy.count, ringed, rows);
+         device_flags, busy.item, busy.count, busy_joints.item, busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -143,8 +143,9 @@ struct World {
   Buffer<Vec3> prescribed_velocity;                   ///< [m/s]  (motions; advance, servo)
   Buffer<StepClock> clock;                            ///< time there (2; move)
   Buffer<std::int32_t> device_flags;                  ///< of a move launched at once (2; move)
-  fdem_shared::BusyCouples busy;  ///< of this step (search, derive; pairs, sums)
-  StepGraph graph;                ///< of a few steps (advance)
+  fdem_shared::BusyItems busy,
+      busy_joints;  ///< couples, joints of this step (search, derive; pairs, sums)
+  StepGraph graph;  ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.

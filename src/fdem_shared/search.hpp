@@ -432,7 +432,10 @@ void derive_mesh_couples(World& w) {
   const Pairs& pairs = w.couples.pairs;
   build_incidence(w.exec, pairs.a, pairs.b, Shape::elements(w).id, w.couple_incidence);
   w.parent_joint.resize(pairs.size());
-  if (w.exec.space != Space::host) w.busy.resize(pairs.size());
+  if (w.exec.space != Space::host) {
+    w.busy.resize(pairs.size());
+    if constexpr (Shape::lists_joints) w.busy_joints.resize(w.joints.size());
+  }
   const auto& j = std::as_const(w.joints);
   for_each(w.exec, pairs.size(),
            ParentJoint<Shape, decltype(times_of_break(j))>{

@@ -82,11 +82,13 @@ struct JointForces {
     for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
   }
   /// One joint: false, with nothing written, unless it is whole, stays so and slips little under
-  /// pressure, or is dormant. Of i and its neighbours in a pack: what is left to do.
+  /// pressure, is dormant, or parted and without a force. Of i and its neighbours in a pack: what
+  /// is left to do.
   template <class R>
   BR_HD auto update(Index i, const Loaded<R>& loaded) const {
     if constexpr (width_of<R> == 1) {
-      return loaded.stage == JointStage::dormant || stays_whole(i, loaded, false);
+      return loaded.stage == JointStage::dormant || (is_parted(loaded.stage) && !acts(i)) ||
+             stays_whole(i, loaded, false);
     } else {
       constexpr unsigned all = (1U << width_of<R>)-1U;
       if (left<R>(loaded)) return Left{all, 0};
@@ -120,9 +122,7 @@ struct JointForces {
       load_late(i, loaded);
       if (stays_whole(i, loaded, true)) return;
     }
-    const JointForce last = converted<double>(force[i]);
-    const bool acted = dot(last.first, last.first) + dot(last.second, last.second) > 0.0;
-    if (is_parted(before) && !acted) return;
+    if (is_parted(before) && !acts(i)) return;
     const JointEnds& e = ends[i];
     const NodeState &a0 = nodes[e.a0], &a1 = nodes[e.a1], &b0 = nodes[e.b0], &b1 = nodes[e.b1];
     const Vec2 first = dt * (a0.velocity - b0.velocity), second = dt * (a1.velocity - b1.velocity);
@@ -216,6 +216,11 @@ struct JointForces {
   }
 
  private:
+  /// Whether the force of its last evaluation is other than zero.
+  BR_HD bool acts(Index i) const {
+    const JointForce last = converted<double>(force[i]);
+    return dot(last.first, last.first) + dot(last.second, last.second) > 0.0;
+  }
   /// Whether none of a pack is whole.
   template <class R>
   BR_HD static bool left(const Loaded<R>& loaded) {

@@ -4,6 +4,7 @@
 #include "fdem_shared/device_run.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "exec/for_each.hpp"
 #include "fdem/joints/insertion_kernels.hpp"
@@ -16,6 +17,7 @@ namespace breccia::fdem {
 namespace {
 
 using fdem_shared::Bounded;
+using fdem_shared::BusyAlone;
 using fdem_shared::BusyWide;
 using fdem_shared::emptying;
 using fdem_shared::ListBusy;
@@ -24,42 +26,74 @@ using fdem_shared::ListBusy;
 /// more, and can have the registers that suit them.
 constexpr Index fewest_joints_apart = 250'000;
 
-/// From so many couples on those with work to do are listed first: a launch more. Tests in
-/// Space::shadow see both ways.
+template <int blocks, class Kernel>
+Bounded<Kernel, blocks> bounded(const Kernel& kernel) {
+  return {kernel};
+}
+
+/// From so many couples on those with work to do are listed first, and damaged joints: a launch
+/// more. Tests in Space::shadow see both ways.
 Index fewest_couples_listed(Space space) {
   return space == Space::shadow ? 500 : 8'000;
 }
-/// Groups of threads that share the list out: as many as run at a time, and more.
-constexpr Index most_groups = 132 * 128;
+/// Groups of threads that share the list of couples out: as many as run at a time, and more;
+/// threads that share the list of joints out.
+constexpr Index most_groups = 132 * 128, most_threads = 132 * 1024;
+
+/// Joints and couples by one thread or group of threads each.
+template <class Number, class By>
+void launch_all_pairs(World& w, const By& by) {
+  const Index joints = w.joints.size(), couples = w.couples.size();
+  const JointForces<Number> joint = joint_kernel<Number>(w);
+  const CouplesWide<Number> wide{couple_kernel<Number>(w)};
+  const Index threads = couples * CouplesWide<Number>::width;
+  if (joints < fewest_joints_apart)
+    return for_each_part(w.exec,
+                         part(threads, by(wide), part(joints, by(bounded<4>(joint)), Parts<>{})));
+  for_each_part(w.exec, part(joints, by(bounded<8>(joint)), Parts<>{}));
+  for_each_part(w.exec, part(threads, by(wide), Parts<>{}));
+}
+
+/// First what takes little, and lists of couples that may meet and of damaged joints; then these.
+template <class Number, class By>
+void launch_busy_pairs(World& w, const By& by) {
+  using Couple = CoupleForces<Number>;
+  using Joint = JointForces<Number>;
+  const Index joints = w.joints.size(), couples = w.couples.size();
+  const Couple couple = couple_kernel<Number>(w);
+  const Joint joint = joint_kernel<Number>(w);
+  const View<Index> busy = w.busy.item.view(), count = w.busy.count.view();
+  const View<Index> busy_joint = w.busy_joints.item.view(),
+                    joint_count = w.busy_joints.count.view();
+  const auto list_couples = by(ListBusy<Couple>{couple, busy, count});
+  const auto list_joints = [&](const auto& kernel) {
+    return by(ListBusy<std::remove_cvref_t<decltype(kernel)>>{kernel, busy_joint, joint_count});
+  };
+  if (joints < fewest_joints_apart) {
+    for_each_part(w.exec, part(couples, list_couples,
+                               part(joints, list_joints(bounded<4>(joint)), Parts<>{})));
+  } else {
+    for_each_part(w.exec, part(joints, list_joints(bounded<8>(joint)), Parts<>{}));
+    for_each_part(w.exec, part(couples, list_couples, Parts<>{}));
+  }
+  const Index groups = std::min(couples, most_groups), threads = std::min(joints, most_threads);
+  for_each_part(w.exec,
+                part(groups * CouplesWide<Number>::width,
+                     by(BusyWide<CouplesWide<Number>>{{couple}, busy, count, groups}),
+                     part(threads, by(BusyAlone<Joint>{joint, busy_joint, joint_count, threads}),
+                          Parts<>{})));
+}
 
 /// Joints and couples.
 template <class Number, class By>
 void launch_pairs(World& w, const By& by) {
   const Index joints = w.joints.size(), couples = w.couples.size();
-  const CoupleForces<Number> all = couple_kernel<Number>(w);
-  const CouplesWide<Number> wide{all};
   if (joints + couples == 0)  // triangles read corners ahead, which the move writes
     return for_each(w.exec, 1, by(Fence{}));
-  const auto with_joints = [&](Index count, const auto& kernel) {
-    if (joints < fewest_joints_apart)
-      return for_each_part(
-          w.exec, part(count, kernel,
-                       part(joints, by(Bounded<JointForces<Number>, 4>{joint_kernel<Number>(w)}),
-                            Parts<>{})));
-    for_each_part(w.exec, part(joints, by(Bounded<JointForces<Number>, 8>{joint_kernel<Number>(w)}),
-                               Parts<>{}));
-    for_each_part(w.exec, part(count, kernel, Parts<>{}));
-  };
   if (couples < fewest_couples_listed(w.exec.space))
-    return with_joints(couples * CouplesWide<Number>::width, by(wide));
-  with_joints(couples,
-              by(ListBusy<CoupleForces<Number>>{all, w.busy.couple.view(), w.busy.count.view()}));
-  const Index groups = std::min(couples, most_groups);
-  for_each_part(w.exec,
-                part(groups * CouplesWide<Number>::width,
-                     by(BusyWide<CouplesWide<Number>>{wide, std::as_const(w.busy.couple).view(),
-                                                      std::as_const(w.busy.count).view(), groups}),
-                     Parts<>{}));
+    launch_all_pairs<Number>(w, by);
+  else
+    launch_busy_pairs<Number>(w, by);
 }
 
 struct Launches {

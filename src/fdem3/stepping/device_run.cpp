@@ -59,7 +59,7 @@ struct Launches {
     const Index couples = w.couples.size();
     if (couples == 0) return;
     const CoupleForces all = couple_kernel(w);
-    const View<Index> busy = w.busy.couple.view(), count = w.busy.count.view();
+    const View<Index> busy = w.busy.item.view(), count = w.busy.count.view();
     for_each_part(w.exec, part(couples, by(ListBusy<CoupleForces>{all, busy, count}), Parts<>{}));
     const Index groups = std::min(couples, most_groups);
     for_each_part(w.exec,

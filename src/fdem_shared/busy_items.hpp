@@ -1,23 +1,26 @@
 #pragma once
-// Couples with work to do, listed on a device. Of all couples that a search lists few touch in a
-// step; a warp that takes 32 of all waits for those of them that do.
+// Couples and joints with more work to do than others, listed on a device. Of all couples that a
+// search lists few touch in a step, of all joints few are damaged; a warp that takes 32 of all
+// waits for those of them that are.
 //
-// A launch of ListBusy looks at all couples and lists the others than those at rest apart; a launch
-// of BusyWide or BusyWhereDue evaluates the list; the sums of forces empty it (EmptiesList). The
-// order of the list changes from run to run, but each couple writes only its own forces.
+// A launch of ListBusy looks at all items: it finishes those with little to do, couples at rest
+// apart and joints that stay whole, and lists the others. A launch of BusyWide, BusyWhereDue or
+// BusyAlone evaluates the list; the sums of forces empty it (EmptiesLists). The order of the list
+// changes from run to run, but each item writes only its own forces.
 
 #include "core/kernel.hpp"
 #include "exec/buffer.hpp"
+#include "exec/launch.hpp"
 #include "exec/lockstep.hpp"
 
 namespace breccia::fdem_shared {
 
-/// Numbers of busy couples: room for all, and how many there are.
-struct BusyCouples {
-  Buffer<Index> couple;  ///< [-]  (couples)
-  Buffer<Index> count;   ///< [-]  (1)
-  void resize(Index couples) {
-    couple.resize(couples);
+/// Numbers of busy couples or joints: room for all, and how many there are.
+struct BusyItems {
+  Buffer<Index> item;   ///< [-]  (couples or joints)
+  Buffer<Index> count;  ///< [-]  (1)
+  void resize(Index items) {
+    item.resize(items);
     count.resize(1);
   }
 };
@@ -36,15 +39,16 @@ BR_HD inline Index place_at_end(Index& count) {
 #endif
 }
 
-/// Lists the couples that update() of their kernel leaves to slow(). One launch before has ended
-/// that emptied the list.
-template <class Couples>
+/// Lists the items that update() of their kernel leaves to slow(). One launch before has ended that
+/// emptied the list.
+template <class Kernel>
 struct ListBusy {
   static constexpr const char* name = "fdem.list_busy";
-  Couples all;
+  static constexpr int least_blocks = least_blocks_of<Kernel>();
+  Kernel all;
   View<Index> busy, count;
 
-  using Loaded = typename LoadedBy<Couples>::Loaded;
+  using Loaded = typename LoadedBy<Kernel>::Loaded;
   BR_HD void set(const StepTime&) {}
   BR_HD void load_early(Index i, Loaded& loaded) const { all.load_early(i, loaded); }
   BR_HD void load_late(Index i, Loaded& loaded) const { all.load_late(i, loaded); }
@@ -115,21 +119,39 @@ struct BusyWhereDue {
   }
 };
 
-/// The sums of forces that follow: they empty the list.
+/// Busy items by `threads` threads, each of which takes every threads-th one by itself.
+template <class Kernel>
+struct BusyAlone {
+  static constexpr const char* name = Kernel::name;
+  Kernel kernel;
+  View<const Index> busy, count;
+  Index threads;
+
+  BR_HD void set(const StepTime& now) { kernel.set(now); }
+  BR_HD void operator()(Index i) const {
+    for (Index k = i; k < count[0]; k += threads) kernel.slow(busy[k]);
+  }
+  BR_HD void update_at(const StepTime& now, Index i) const {
+    for (Index k = i; k < count[0]; k += threads) run_slow(&kernel, now, busy[k]);
+  }
+};
+
+/// The sums of forces that follow: they empty the lists.
 template <class Sums>
-struct EmptiesList : Sums {
-  Index* count;  ///< null: no list
+struct EmptiesLists : Sums {
+  Index *couples, *joints;  ///< how many are listed; null: no list
 
   template <class Read>
   BR_HD void update(Index i, const Read& loaded) const {
-    if (i == 0 && count != nullptr) *count = 0;
+    if (i == 0 && couples != nullptr) *couples = 0;
+    if (i == 0 && joints != nullptr) *joints = 0;
     Sums::update(i, loaded);
   }
 };
 
 template <class World, class Sums>
-EmptiesList<Sums> emptying(World& w, const Sums& sums) {
-  return {sums, w.busy.count.data()};
+EmptiesLists<Sums> emptying(World& w, const Sums& sums) {
+  return {sums, w.busy.count.data(), w.busy_joints.count.data()};
 }
 
 }  // namespace breccia::fdem_shared
