@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 
 #include "app/option_kinds.hpp"
@@ -80,6 +81,8 @@ RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
                 Communicator* ranks) {
   RunPlan plan = plan_of(read);
   plan.limits = {options.until, options.steps, wall_time(options.max_wall), options.stage};
+  plan.ends_anew = std::any_of(options.overrides.begin(), options.overrides.end(),
+                               [](const auto& set) { return set.starts_with("time.end="); });
   plan.machine = {processor_name(), options.device, exec.threads,
                   ranks == nullptr ? 1 : ranks->size()};
   plan.timers = exec.timers;

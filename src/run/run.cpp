@@ -81,10 +81,10 @@ void Run::go_on_from(const RunState& former) {
   dt_min_ = former.dt_min;
   dt_max_ = former.dt_max;
   recorder_.resume(former.record, former.time, former.step);
-  // A run that was cut short goes on to where it was sent; one that got there goes on to the end of
-  // its case.
+  // A run that was cut short goes on to where it was sent; one that got there, or that is told
+  // where to end, goes on to the end of its case.
   const bool cut_short = former.time < former.end_time && former.step < former.end_steps;
-  if (!cut_short || plan_.limits.time || plan_.limits.steps) return;
+  if (!cut_short || plan_.ends_anew || plan_.limits.time || plan_.limits.steps) return;
   end_time_ = former.end_time;
   end_steps_ = former.end_steps;
 }

@@ -44,6 +44,7 @@ struct RunPlan {
   /// Of what decides the states of the run; a checkpoint of another one is refused.
   std::string model_digest;
   Limits limits;
+  bool ends_anew = false;  ///< time.end was given for this run, whatever the run before was sent to
   Machine machine;
   StageTimers* timers = nullptr;  ///< what the method books its stages in
   Communicator* ranks = nullptr;  ///< that share the work; null: none

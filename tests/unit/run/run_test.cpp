@@ -150,6 +150,18 @@ TEST(Run, InterruptedAndResumedLeavesWhatAnUnbrokenRunLeaves) {
   }
 }
 
+TEST(Run, ThatWasCutShortEndsWhereItIsTold) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.signal_at = 77;
+  run_fake(fake_plan(), scratch / "cut", trouble);
+  RunPlan longer = fake_plan();
+  longer.config.time.end *= 1.5;
+  longer.ends_anew = true;
+  EXPECT_EQ(resume_fake(longer, scratch / "cut"), 0);
+  EXPECT_GE(summary_of(scratch / "cut")["time"], longer.config.time.end);
+}
+
 TEST(Run, WritesARowAStepAndPicturesOfSteps) {
   const ScratchFolder scratch;
   RunPlan plan = fake_plan();
