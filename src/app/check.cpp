@@ -14,6 +14,7 @@
 #include "app/option_kinds.hpp"
 #include "exec/error.hpp"
 #include "io/case/key_pages.hpp"
+#include "io/case/material_library.hpp"
 #include "io/case/problems.hpp"
 #include "io/emphasis.hpp"
 #include "io/fold.hpp"
@@ -323,12 +324,17 @@ struct CheckCommand {
     }
     tell_warnings(*method, read);
   }
-  /// The modulus that the case gives a material of triangles or tetrahedra; 0: none.  [Pa]
-  static double given_young(const Case& read, const std::string& material) {
+  /// The modulus that the case gives a material of triangles or tetrahedra, 0: none  [Pa], and the
+  /// material of the program that it uses.
+  struct GivenMaterial {
+    double young = 0.0;
+    std::string use;
+  };
+  static GivenMaterial given_material(const Case& read, const std::string& material) {
     const auto among = [&](const auto& materials) {
       for (const auto& m : materials)
-        if (m.name == material) return m.young;
-      return 0.0;
+        if (m.name == material) return GivenMaterial{m.young, m.use};
+      return GivenMaterial{};
     };
     return std::visit(
         [&](const auto& config) {
@@ -340,14 +346,35 @@ struct CheckCommand {
         read.config);
   }
 
-  /// By how much joints soften a specimen, and the `young` at which it has the modulus given: both
-  /// grow alike, as the stiffness of joints is given over `young`.
-  static std::string softened(double young, double given) {
-    if (!(given > 0.0) || !(young < 0.9995 * given)) return "";
+  /// The modulus that specimens of a material of the program are to show; 0: none.  [Pa]
+  static double target_young(const std::string& material) {
+    const NamedMaterial* const named = named_material(material);
+    if (named != nullptr)
+      for (const MaterialTarget& target : named->targets)
+        if (target.name == "young") return target.value;
+    return 0.0;
+  }
+
+  /// By how much joints soften a specimen, and the `young` at which it has the modulus given, or
+  /// that of the material which it uses: both grow alike, as the stiffness of joints is given over
+  /// `young`.
+  static std::string softened(double young, const GivenMaterial& given) {
+    constexpr double near = 0.05;
+    if (const double target = target_young(given.use); target > 0.0) {
+      const double off = young / target - 1.0;
+      const std::string meant = std::abs(off) < near
+                                    ? std::string("nothing to do")
+                                    : fmt::format("young = \"{:.4g} GPa\" gives that",
+                                                  1e-9 * given.young * target / young);
+      return fmt::format(", {:+.1f} % of {:.4g} GPa, which {} is to show: {}", 100.0 * off,
+                         1e-9 * target, given.use, meant);
+    }
+    if (!(given.young > 0.0) || !(young < 0.9995 * given.young)) return "";
     return fmt::format(
         ", {:.1f} % softer than its young of {:.4g} GPa: a specimen shows that; young = \"{:.4g} "
         "GPa\" gives {:.4g} GPa",
-        100.0 * (1.0 - young / given), 1e-9 * given, 1e-9 * given * given / young, 1e-9 * given);
+        100.0 * (1.0 - young / given.young), 1e-9 * given.young,
+        1e-9 * given.young * given.young / young, 1e-9 * given.young);
   }
 
   /// One number of a material as its joints soften it, model.rock.<material>.<word>.
@@ -359,7 +386,7 @@ struct CheckCommand {
     if (word == "young")
       fmt::print("{}", fitting(fmt::format("  {} with its joints: E {:.4g} GPa{}\n",
                                            harmless(whose), 1e-9 * fact.value,
-                                           softened(fact.value, given_young(read, whose))),
+                                           softened(fact.value, given_material(read, whose))),
                                4, stdout));
     else if (word == "poisson")
       fmt::print("  {} with its joints: nu {:.4g}\n", harmless(whose), fact.value);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@
 #include "io/whole_file.hpp"
 #include "laboratory/statistics.hpp"
 #include "laboratory/sweep.hpp"
+#include "report/table.hpp"
+#include "run/results/result_folder.hpp"
 
 namespace breccia::app {
 namespace {
@@ -48,14 +51,26 @@ std::string number_text(const lab::SweepRow& row, const std::string& measure) {
   return counts ? count_text(*number) : lab::short_number(*number);
 }
 
-/// How far a number is from that of the first run.
+/// The unit of a measure, from the header of history.csv; empty: none that it tells.
+std::string unit_of(const report::NumberTable& history, const std::string& measure) {
+  std::string column = measure;
+  if (measure.starts_with("probe."))
+    column = measure.substr(6, measure.rfind('.') - 6);
+  else if (measure.starts_with("energy."))
+    column = measure.substr(7);
+  const report::Column* const found = history.column(column);
+  return found == nullptr || found->unit == "-" ? "" : found->unit;
+}
+
+/// By how much the number of the second run is larger than that of the first one, also where both
+/// are negative: 5 % where -1.05 is to -1.
 std::string difference(const lab::SweepRow& first, const lab::SweepRow& second,
                        const std::string& measure) {
   const auto a = first.result->number(measure), b = second.result->number(measure);
   if (!a || !b) return "";
   if (*a == *b) return "alike";
   if (*a == 0.0) return "";
-  return fmt::format("{:+.3g} %", 100.0 * (*b - *a) / std::abs(*a));
+  return fmt::format("{:+.3g} %", 100.0 * (*b / *a - 1.0));
 }
 
 /// Names of checks are sentences: they fold.
@@ -84,7 +99,9 @@ struct CompareCommand {
     char letter = 'a';
     std::vector<std::string> heads;
     for (const lab::SweepRow& row : rows) {
-      fmt::print("{}  {}: {}{}\n", letter, harmless(row.folder), harmless(row.result->status),
+      const bool lost = row.result->status == "running" && !ResultFolder::is_locked(row.folder);
+      fmt::print("{}  {}: {}{}\n", letter, harmless(row.folder),
+                 lost ? "killed" : harmless(row.result->status),
                  row.result->complete() ? "" : ", not to the end of its case");
       heads.emplace_back(1, letter++);
     }
@@ -95,11 +112,15 @@ struct CompareCommand {
       shown.insert(shown.end(), table.measures().begin(), table.measures().end());
     else
       shown = table.measures();
+    const std::string table_of_first = folders[0] + "/history.csv";
+    report::NumberTable history;
+    if (std::filesystem::exists(table_of_first)) history = report::read_table(table_of_first);
     for (const std::string& measure : shown) {
       std::vector<std::string> cells;
       for (const lab::SweepRow& row : rows) cells.push_back(number_text(row, measure));
       if (two) cells.push_back(difference(rows[0], rows[1], measure));
-      print_row(measure, cells);
+      const std::string unit = unit_of(history, measure);
+      print_row(unit.empty() ? measure : fmt::format("{} [{}]", measure, unit), cells);
     }
     const std::string first = hash_of(folders[0]);
     bool alike = !first.empty();

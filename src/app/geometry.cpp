@@ -324,6 +324,13 @@ Geometry read_geometry(const std::string& path, int frame) {
       g.mesh = prepare::read_mesh(path, true);
     return g;
   }
+  for (const char* other : {".stl", ".vtk", ".vtu", ".vtp", ".pvd", ".hdf", ".geo", ".step", ".stp",
+                            ".obj", ".ply", ".toml", ".png"})
+    if (kind == other)
+      throw InputError(path + ": " + kind +
+                       " is no mesh and no packing that can be looked at; a mesh may be .msh or "
+                       ".inp, spheres .csv, .txt, a dump or data of LAMMPS, a prepared model .br; "
+                       "or give a result folder");
   prepare::Spheres spheres = prepare::read_spheres(path);
   g.center = std::move(spheres.position);
   g.radius = std::move(spheres.radius);

@@ -21,7 +21,9 @@
 #include "io/round_numbers.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
+#include "report/table.hpp"
 #include "run/results/checkpoints.hpp"
+#include "run/results/result_folder.hpp"
 
 namespace breccia::app {
 namespace {
@@ -99,14 +101,36 @@ void tell(const char* head, const std::string& text) {
   }
 }
 
+/// How far the history of a run that has not ended goes beyond its summary; empty: no farther.
+std::string told_since(const std::string& path, const Told& told) {
+  const std::string file = path + "/history.csv";
+  if (!fs::exists(file)) return "";
+  const report::NumberTable history = report::read_table(file);
+  const report::Column* const step = history.column("step");
+  const report::Column* const time = history.column("time");
+  if (step == nullptr || time == nullptr || history.rows() == 0) return "";
+  if (!(step->values.back() > told.number("/steps"))) return "";
+  return fmt::format(
+      "these numbers are of step {}; {} goes on to step {}, {}. What broke is told when the run "
+      "has ended",
+      count_text(told.number("/steps")), file, count_text(step->values.back()),
+      time_text(time->values.back()));
+}
+
 void describe_folder(const std::string& path) {
   const std::string summary = path + "/summary.json";
   if (!fs::exists(summary))
     throw InputError(path + ": this folder holds no run (there is no summary.json)" +
                      (fs::exists(path + "/sweep.csv") ? "; of a sweep read sweep.md" : ""));
   const Told told(summary);
-  print_harmless("{}: {}{}\n", path, told.text("/status"),
-                 told.text("/message").empty() ? "" : ", " + told.text("/message"));
+  const bool unfinished = told.text("/status") == "running";
+  if (unfinished && !ResultFolder::is_locked(path))
+    print_harmless(
+        "{}: killed; nothing runs in this folder any more, go on with: breccia resume {}\n", path,
+        path);
+  else
+    print_harmless("{}: {}{}\n", path, told.text("/status"),
+                   told.text("/message").empty() ? "" : ", " + told.text("/message"));
   tell("case", fmt::format("{}, {}, seed {:.0f}", told.text("/case/name"), told.text("/method"),
                            told.number("/case/seed")));
   tell("model", told.model());
@@ -116,7 +140,11 @@ void describe_folder(const std::string& path) {
                           count_text(told.number("/machine/threads"))));
   tell("energy", fmt::format("{:.2g} % is missing from the ledger",
                              100.0 * told.number("/energy/error_relative")));
-  tell_findings(path);
+  const std::string since = unfinished ? told_since(path, told) : "";
+  if (since.empty())
+    tell_findings(path);
+  else
+    tell("since", since);
   tell("checks", told.checks());
   tell("hash", told.text("/state_hash"));
   tell("program",

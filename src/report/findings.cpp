@@ -356,8 +356,10 @@ class Findings {
     const double fracture = record_.number("energy.fracture").value_or(0.0);
     if (fracture <= 0.0) return "";
     std::vector<std::string> others;
+    const bool bars = record_.number("model.links_by_kind.steel").value_or(0.0) > 0.0;
     for (const auto& [column, words] :
-         {std::pair{"plastic", "of plastic slip"}, std::pair{"friction", "of friction"}}) {
+         {std::pair{"plastic", bars ? "in yielding bars and plastic slip" : "of plastic slip"},
+          std::pair{"friction", "of friction"}}) {
       const double spent = record_.number(std::string("energy.") + column).value_or(0.0);
       if (spent > 1e-9 * fracture) others.push_back(value_text(spent, energy_unit()) + " " + words);
     }

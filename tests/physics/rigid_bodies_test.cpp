@@ -123,6 +123,25 @@ TEST(RigidBodies, follow_tables_of_force_and_torque) {
   EXPECT_LT(energies(w).balance.error_relative, 1e-5);
 }
 
+/// A body at rest that nothing is near to steps as it will once it moves: its first steps are no
+/// longer than the others, and no energy is missing.
+template <class World>
+void expect_steps_of_one_length(World& w) {
+  const double first = w.next_dt;
+  EXPECT_LT(first, 1e-5);
+  for (int k = 0; k < 20; ++k) step(w);
+  EXPECT_NEAR(w.next_dt, first, 0.1 * first);
+  foresee_motions(w);
+  EXPECT_LT(energies(w).balance.error_relative, 1e-7);
+}
+TEST(RigidBodies, step_from_rest_as_when_they_move) {
+  fdem::testing::Scene s = plate();
+  s.config.time.max_step = 1e-3;
+  s.config.supports[0].force = Vec2{3e3, 0.0};
+  fdem::World w = s.world();
+  expect_steps_of_one_length(w);
+}
+
 /// Directions that are not free go as they are told.
 TEST(RigidBodies, keep_the_velocity_of_what_is_not_free) {
   fdem::testing::Scene s = plate();
@@ -353,6 +372,14 @@ TEST(RigidBodies, go_by_force_and_torque_in_space) {
   const Vec3 spin = after.angular - cross(solid_body(w).centre, after.linear);
   EXPECT_LT(norm(spin - w.time * torque), 1e-6 * norm(w.time * torque));
   EXPECT_LT(energies(w).balance.error_relative, 1e-6);
+}
+
+TEST(RigidBodies, step_from_rest_as_when_they_move_in_space) {
+  fdem3::testing::Scene s = brick();
+  s.config.time.max_step = 1e-3;
+  s.config.supports[0].force = Vec3{30.0, 0.0, 0.0};
+  fdem3::World w = s.world();
+  expect_steps_of_one_length(w);
 }
 
 /// A rigid cube falls aslant on an elastic one: momentum and spin stay.

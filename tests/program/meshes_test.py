@@ -158,6 +158,12 @@ class Meshes(unittest.TestCase):
         self.breccia("convert", "solid.msh", "solid.vtu")
         self.assertIn('Name="types"', (self.path / "solid.vtu").read_bytes().decode("latin1"))
 
+    def test_other_files_are_told_what_may_be_looked_at(self):
+        (self.path / "part.stl").write_text("solid part\nendsolid part\n")
+        said = self.breccia("mesh", "info", "part.stl", code=2)
+        self.assertIn(".stl is no mesh and no packing", said)
+        self.assertIn(".msh", said)
+
     def test_what_cannot_be_is_refused(self):
         self.assertIn("a mesh is written as", self.breccia("convert", "pair.msh", "x.csv", code=2))
         self.assertIn("no.msh", self.breccia("mesh", "info", "no.msh", code=3))

@@ -210,6 +210,7 @@ struct StableStep {
     Vec2 x[3], v[3];
     split(nodes[t], x, v);
     const int exposed = exposed_edges(t);
+    if (exposed != 0 && is_loose(t)) return parts(t, x, exposed);
     const int near = exposed == 0 ? 0 : near_edges(t, x, exposed);
     return fdem_shared::parts_until_next([&, this](int pressed) { return parts(t, x, pressed); },
                                          near, exposed, v, evaluate_every,
@@ -221,7 +222,7 @@ struct StableStep {
     Vec2 x[3], v[3];
     split(nodes[t], x, v);
     int pressed = where == fdem_shared::Pressed::nowhere ? 0 : exposed_edges(t);
-    if (pressed != 0 && where == fdem_shared::Pressed::soon)
+    if (pressed != 0 && where == fdem_shared::Pressed::soon && !is_loose(t))
       pressed = fdem_shared::pressed_until_next(near_edges(t, x, pressed), pressed, v,
                                                 evaluate_every * longest,
                                                 [&, this] { return nearness.reach(t); });
@@ -232,7 +233,8 @@ struct StableStep {
   BR_HD bool is_held(Index t, int corner) const {
     return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 3 && holds[hold[t]].loose == 0;
   }
-  /// Whether it is a part of a rigid body that forces move: only what it meets is stiff.
+  /// Whether it is a part of a rigid body that forces move: only what it meets is stiff. Contact
+  /// counts wherever it is exposed: else nothing bounds the step of a body at rest.
   BR_HD bool is_loose(Index t) const { return hold[t] >= 0 && holds[hold[t]].loose != 0; }
 
  private:

@@ -47,6 +47,7 @@ struct StableStep {
     Vec3 x[4], v[4];
     split(nodes[t], x, v);
     const int open = exposed[t];
+    if (is_loose(t)) return parts(t, x, open);
     return fdem_shared::parts_until_next([&, this](int pressed) { return parts(t, x, pressed); },
                                          open == 0 || is_near(t, x) ? open : 0, open, v,
                                          evaluate_every,
@@ -58,7 +59,7 @@ struct StableStep {
     Vec3 x[4], v[4];
     split(nodes[t], x, v);
     int pressed = where == fdem_shared::Pressed::nowhere ? 0 : exposed[t];
-    if (pressed != 0 && where == fdem_shared::Pressed::soon && !is_near(t, x))
+    if (pressed != 0 && where == fdem_shared::Pressed::soon && !is_loose(t) && !is_near(t, x))
       pressed = fdem_shared::pressed_until_next(0, pressed, v, evaluate_every * longest,
                                                 [&, this] { return near_reach(shape[t]); });
     const Form form(*this, t, x, pressed);
@@ -68,7 +69,8 @@ struct StableStep {
   BR_HD bool is_held(Index t, int corner) const {
     return hold[t] >= 0 && holds[hold[t]].fixed_at(corner) == 7 && holds[hold[t]].loose == 0;
   }
-  /// Whether it is a part of a rigid body that forces move: only what it meets is stiff.
+  /// Whether it is a part of a rigid body that forces move: only what it meets is stiff. Contact
+  /// counts wherever it is exposed: else nothing bounds the step of a body at rest.
   BR_HD bool is_loose(Index t) const { return hold[t] >= 0 && holds[hold[t]].loose != 0; }
 
  private:

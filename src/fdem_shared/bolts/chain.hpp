@@ -79,6 +79,7 @@ class BoltChain {
   double most_missing() const;
   void step_all();
   void step_one(std::size_t i);
+  void step_down();
   void keep();
 
   const BoltLaw& law_;
@@ -162,9 +163,30 @@ void BoltChain<Node>::step_one(std::size_t i) {
   nodes_[i].slip += missing_at(i) / (before + after + law_.bond_stiffness * share(i));
 }
 
+/// Newton's step, as far along it as the energy falls. No force falls as bar or bond go farther, so
+/// the energy is convex, and steps lead to its least.
+template <class Node>
+void BoltChain<Node>::step_down() {
+  std::vector<double> from(nodes()), way(nodes());
+  for (std::size_t i = 0; i < nodes(); ++i) from[i] = nodes_[i].slip;
+  step_all();
+  for (std::size_t i = 0; i < nodes(); ++i) way[i] = nodes_[i].slip - from[i];
+  const auto falls_at = [&](double share) {
+    double slope = 0.0;
+    for (std::size_t i = 0; i < nodes(); ++i) nodes_[i].slip = from[i] + share * way[i];
+    for (std::size_t i = 0; i < nodes(); ++i) slope += missing_at(i) * way[i];
+    return slope > 0.0;
+  };
+  double down = 0.0, up = 1.0;
+  if (falls_at(up)) return;
+  for (double middle = 0.5; down < middle && middle < up; middle = 0.5 * (down + up))
+    (falls_at(middle) ? down : up) = middle;
+  falls_at(up);
+}
+
 template <class Node>
 void BoltChain<Node>::settle() {
-  constexpr int most_steps = 50;
+  constexpr int most_steps = 50, most_down = 1000;
   const double enough = 1e-10 * law_.yield;
   double missing = most_missing();
   for (int k = 0; k < most_steps && missing > enough; ++k) {
@@ -180,6 +202,10 @@ void BoltChain<Node>::settle() {
       now = most_missing();
     }
     missing = now;
+  }
+  for (int k = 0; k < most_down && missing > enough; ++k) {  // a long way in one step
+    step_down();
+    missing = most_missing();
   }
   keep();
 }

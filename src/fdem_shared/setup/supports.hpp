@@ -1,6 +1,8 @@
 #pragma once
 // Supports: corners whose motion is prescribed.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -58,21 +60,54 @@ void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Inde
 /// @param n       the corner
 /// @param bits    directions that the support prescribes
 /// @param motion  its place in World::prescribed, -1: it stands still
-/// @throws InputError where another support does so, too
-template <class Shape, class Hold>
-void hold_corner(const std::string& support, Index n, int bits, std::int16_t motion, Shape,
-                 Hold& hold) {
+/// @param clash   clash(bits) tells of directions that another support prescribes, too; 0: of two
+///                that move it
+template <class Shape, class Hold, class Clash>
+void hold_corner(Index n, int bits, std::int16_t motion, Shape, Hold& hold, const Clash& clash) {
   const int corner = n % Shape::corners;
-  const std::string element =
-      std::string(Shape::element) + " " + std::to_string(n / Shape::corners);
-  if ((hold.fixed >> (Shape::dimension * corner) & bits) != 0)
-    throw InputError("support." + support + ": prescribes a direction of " + element +
-                     " that another support prescribes, too");
-  if (motion >= 0 && hold.motion[corner] >= 0)
-    throw InputError("support." + support + ": " + element +
-                     " has a corner that another support moves, too");
+  const int twice = hold.fixed >> (Shape::dimension * corner) & bits;
+  if (twice != 0 || (motion >= 0 && hold.motion[corner] >= 0)) clash(twice);
   hold.fixed = static_cast<decltype(hold.fixed)>(hold.fixed | bits << (Shape::dimension * corner));
   if (motion >= 0) hold.motion[corner] = motion;
+}
+
+/// Refuses two supports that hold a corner in one direction, or that move it both.
+/// @param s     the second of them
+/// @param n     the corner
+/// @param bits  the directions; 0: both move it, in different ones
+template <class World, class Config>
+[[noreturn]] void refuse_two_supports(const World& w, const Config& config, std::size_t s, Index n,
+                                      int bits) {
+  using Shape = ShapeOf<World>;
+  const std::size_t bodies = w.given->sets.size() - config.supports.size();
+  std::string other = "another support";
+  for (std::size_t o = 0; o < s; ++o) {
+    const auto& nodes = w.given->sets[bodies + o].nodes;
+    const bool meant = bits == 0 || (fixed_directions(config.supports[o]) & bits) != 0;
+    if (meant && std::find(nodes.begin(), nodes.end(), n) != nodes.end())
+      other = "support." + config.supports[o].name;
+  }
+  std::string axes;
+  for (int axis = 0; axis < Shape::dimension; ++axis)
+    if ((bits >> axis & 1) != 0) axes += std::string(axes.empty() ? "" : " and ") + "xyz"[axis];
+  const std::string element =
+      std::string(Shape::element) + " " + std::to_string(n / Shape::corners);
+  const auto& all = Shape::elements(w).nodes;
+  std::string place;
+  if (w.domain.single_rank() && n / Shape::corners < all.size()) {
+    typename Shape::Nodes nodes;
+    copy_bytes(&nodes, Space::host, all.data() + n / Shape::corners, all.space(), sizeof nodes);
+    const Vec3 x = to_space(nodes.at[n % Shape::corners].position);
+    place = Shape::dimension == 2 ? fmt::format(" at ({:.4g}, {:.4g}) m", x.x, x.y)
+                                  : fmt::format(" at ({:.4g}, {:.4g}, {:.4g}) m", x.x, x.y, x.z);
+  }
+  const std::string head = "support." + config.supports[s].name;
+  if (bits == 0)
+    throw InputError(head + ": moves a corner of " + element + place + " that " + other +
+                     " moves, too");
+  throw InputError(head + ": prescribes " + axes + " of a corner of " + element + place + " that " +
+                   other + " prescribes, too; leave " + axes +
+                   " out of fix of one of them, or hold different regions");
 }
 
 /// A rigid body as the keys of its support say.
@@ -173,7 +208,8 @@ void prescribe_supports(World& w, const Config& config, std::vector<Hold>& holds
         own = static_cast<Index>(holds.size());
         holds.emplace_back();
       }
-      hold_corner(support.name, n, bits, motion, Shape{}, holds[at(own)]);
+      hold_corner(n, bits, motion, Shape{}, holds[at(own)],
+                  [&](int twice) { refuse_two_supports(w, config, s, n, twice); });
       if (loose) holds[at(own)].loose = 1;
     }
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -151,8 +150,9 @@ struct CaseReader::State {
               const Range& range, const char* meaning) {
     double given = 0.0;
     const std::string after = *unit == '-' ? "" : fmt::format(" {}", unit);
+    const Range allowed = given_range(range, unit, to);
     const bool good =
-        quantity(node, key, unit, given) && in_range(node, key, given, to, range, meaning, after);
+        quantity(node, key, unit, given) && in_range(node, key, given, to, allowed, meaning, after);
     if (good) to = given;
     return good;
   }

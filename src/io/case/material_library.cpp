@@ -215,6 +215,11 @@ void use_in(toml::table& root, const std::string& of_case, const std::string& wh
       if (!others.empty())
         notes.push_back(fmt::format("{} uses {} but for its own keys: {}", path, *name,
                                     fmt::join(others, ", ")));
+      if (of_case != method)
+        notes.push_back(
+            fmt::format("{}.use = \"{}\": its numbers were found with triangles in plane stress; "
+                        "tetrahedra show others, moduli by a few percent, strengths by more",
+                        path, *name));
       complete(*own, numbers);
       continue;
     }

@@ -326,4 +326,17 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
   return in_target;
 }
 
+Range given_range(const Range& range, std::string_view unit, double usual) {
+  constexpr double least = 1e-12, most = 1e9;
+  if (unit != "m" || range.low < 0.0 || std::isinf(usual)) return range;
+  const bool above_zero = range.low == 0.0 && (range.open == Open::low || range.open == Open::both);
+  Range given = range;
+  given.high = std::min(given.high, most);
+  if (above_zero) {
+    given.low = least;
+    given.open = range.open == Open::both ? Open::high : Open::none;
+  }
+  return given;
+}
+
 }  // namespace breccia

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/keys.hpp"
+
 namespace breccia {
 
 /// Powers of mass, length, time and angle, and the factor to SI: factor x 10^tens. The power of ten
@@ -22,6 +24,12 @@ std::optional<Unit> parse_unit(std::string_view text);
 
 /// The dimension of a unit in words: "a pressure", "a length"; "[kg m-1 s-2]" if it has no name.
 std::string describe_dimension(const Unit& unit);
+
+/// The range of a number that a case gives. A length above 1e9 m is none of a model: squares and
+/// cubes of it are no numbers, and others are lost beside it; nor is one below 1e-12 m.
+/// @param unit   its SI unit; any but "m": the range as it is
+/// @param usual  the value without it; a key that is infinite without it has no bounds
+Range given_range(const Range& range, std::string_view unit, double usual);
 
 /// A number and its unit, as text, in SI. Units that are powers of ten of SI give the double
 /// nearest to the exact value.

@@ -152,6 +152,8 @@ Kind kind_of(int type) {
       return {"a line of second order", 3};
     case 9:
       return {"a triangle of second order", 6};
+    case 11:
+      return {"a tetrahedron of second order", 10};
     case 15:
       return {"a point", 1};
     default:
@@ -337,6 +339,9 @@ class GmshReader {
   void refuse_others(const RawMesh::Element& element, int type) {
     if (type == element_type() || type == side_type() || type == 1 || type == 15) return;
     if (is_quadrangle(type)) return;
+    if (type >= 8 && type != 15)
+      in_.fail(fmt::format("element {} is {}; a mesh may hold those of first order (gmsh -order 1)",
+                           element.number, kind_of(type).name));
     const bool recombined = type == 3 || type == 5 || type == 6 || type == 7;
     in_.fail(fmt::format("element {} is {}; a mesh may hold {}{}", element.number,
                          kind_of(type).name,

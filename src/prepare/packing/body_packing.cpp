@@ -141,6 +141,9 @@ std::vector<std::string> pack_problems(const BodyConfig& body) {
             ".count and .sieves are both given: the sizes of the sieves say how "
             "many elements fill the body");
   }
+  require(pack.porosity == 0.0 || pack.compactness == PackConfig{}.compactness,
+          ".porosity and .compactness are both given: leave one out; porosity is 1 less "
+          "compactness, without overlaps");
   require(pack.porosity == 0.0 || pack.porosity >= 0.15,
           fmt::format(".porosity = {:.4g} is below 0.15, which no packing reaches", pack.porosity));
   for (const std::string& axis : pack.periodic)

@@ -80,6 +80,15 @@ TEST(Bolt, yields_and_is_pulled_out) {
   EXPECT_NEAR(weak.open_to(4e-3), 6e4 * (half + 0.5e-3), 1e-5 * steel.yield);
 }
 
+/// One step may open the crack far beyond what its bond holds: all of that slips, in balance.
+TEST(Bolt, is_in_balance_after_a_long_step) {
+  for (const double opening : {1.75e-3, 5e-3, 0.05, 1.0}) {
+    Crossed weak(10);
+    weak.law.bond_strength = 6e4;
+    EXPECT_NEAR(weak.open_to(opening), 6e4 * (half + 0.5e-3), 1e-9 * steel.yield) << opening;
+  }
+}
+
 /// Opened, closed and opened further: the work is what it holds and what yielding and slip took.
 TEST(Bolt, gives_back_what_it_holds_and_no_more) {
   for (const double bond : {5e5, 6e4}) {

@@ -114,7 +114,8 @@ struct AnyValues {
     if (!std::isinf(range.low) && !std::isinf(range.high))
       return between(range.low + 0.1 * (range.high - range.low),
                      range.high - 0.1 * (range.high - range.low));
-    const double size = between(0.1, 1.0) * std::pow(10.0, static_cast<int>(random() % 40) - 20);
+    const int tens = static_cast<int>(random() % 20) - 10;  // lengths: from 1e-12 to 1e9 m
+    const double size = between(0.1, 1.0) * std::pow(10.0, tens);
     if (std::isinf(range.low)) return random() % 2 == 0 ? -size : size;
     return range.low + size;
   }
@@ -282,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"material = \"c30\"", "material = \"c35\"",
               "body.slab.material = \"c35\" is not a material; there are: c30"},
         Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"sphere\"\nradius = -0.1",
-              "body.slab.radius = -0.1 is outside >= 0"},
+              "body.slab.radius = -0.1 is outside [0, 1e+09] m"},
         Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"sphere\"",
               "body.slab.radius must be above 0"},
         Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"file\"",

@@ -71,6 +71,17 @@ TEST(Units, what_is_no_quantity_is_refused) {
   EXPECT_NE(problem_of("1", "m"), "");
 }
 
+TEST(Units, lengths_of_a_model_have_bounds) {
+  const Range length = given_range(positive, "m", 0.0);
+  for (const double good : {1e-12, 1e-3, 1.0, 1e9}) EXPECT_TRUE(length.holds(good)) << good;
+  for (const double bad : {1e300, 1e10, 1e-300, 0.0, -1.0}) EXPECT_FALSE(length.holds(bad)) << bad;
+  EXPECT_TRUE(given_range(not_negative, "m", 0.0).holds(0.0));
+  EXPECT_FALSE(given_range(not_negative, "m", 0.0).holds(1e300));
+  EXPECT_TRUE(given_range(not_negative, "m", no_limit).holds(no_limit));
+  EXPECT_TRUE(given_range(any_number, "m", 0.0).holds(-1e300));  // a place: everywhere
+  EXPECT_TRUE(given_range(positive, "Pa", 0.0).holds(1e300));
+}
+
 TEST(Units, a_wrong_dimension_is_named_with_the_units_that_fit) {
   EXPECT_EQ(problem_of("30 GN", "Pa"),
             "\"30 GN\" is a force, a pressure is wanted, in Pa, kPa, MPa, GPa or N/mm2; try "

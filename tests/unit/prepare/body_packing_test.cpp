@@ -310,6 +310,9 @@ TEST(BodyPacking, RefusesWhatCannotBePacked) {
   body = box({0.1, 0.1, 0.1}, 500);
   body.pack.porosity = 0.1;
   expect("body.body.pack.porosity = 0.1 is below 0.15", body);
+  body.pack.porosity = 0.42;
+  body.pack.compactness = 0.56;
+  expect("body.body.pack.porosity and .compactness are both given", body);
   expect("body.body.pack.periodic: \"up\" is none of x, y, z",
          periodic(box({0.1, 0.1, 0.1}, 500), {"up"}));
   expect("too few for a periodic cell", periodic(box({0.1, 0.1, 0.1}, 8)));

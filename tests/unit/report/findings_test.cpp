@@ -199,6 +199,17 @@ TEST(Findings, CracksOfSpheresTellWhatSlipAndFrictionTookBesides) {
       << text;
 }
 
+TEST(Findings, PlasticWorkOfBarsIsNoSlipAlone) {
+  const ScratchFolder folder;
+  test::write_text(folder / "summary.json", R"({"case": {"name": "tie"},
+    "model": {"elements": 9, "links": 50, "links_by_kind": {"steel": 20}},
+    "fracture": {"broken_links": 2, "fragments": 1, "largest_fragment_fraction": 1},
+    "energy": {"fracture": 2.4, "plastic": 43.1}})");
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("besides 43.1 J in yielding bars and plastic slip"), std::string::npos)
+      << text;
+}
+
 TEST(Findings, CracksOfAPlaneTellTheirMode) {
   const ScratchFolder folder;
   test::write_text(folder / "summary.json", R"({"case": {"name": "disc"}, "model": {"joints": 50},

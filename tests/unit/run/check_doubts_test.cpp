@@ -240,6 +240,25 @@ TEST_F(Doubts, tell_the_modulus_of_a_specimen) {
   EXPECT_TRUE(has(told.text, " GPa\" gives 30 GPa")) << told.text;
 }
 
+/// A material of the program shows its target: nothing is to be raised.
+TEST_F(Doubts, hold_materials_of_the_program_against_their_target) {
+  const std::string granite =
+      "[[body]]\nname = \"b\"\nshape = \"plate\"\nmaterial = \"stone\"\n"
+      "size = [\"50 mm\", \"100 mm\"]\nmesh_size = \"4 mm\"\n"
+      "[material.stone]\nuse = \"granite-pikes-peak\"\n";
+  const std::string head = "breccia = 1\n[time]\nend = \"1 us\"\n";
+  const Told plane = told_by("check --model", "method = \"fdem2d\"\n" + head + granite);
+  EXPECT_TRUE(has(plane.text, " % of 70.5 GPa, which granite-pikes-peak is to show: nothing to do"))
+      << plane.text;
+  EXPECT_FALSE(has(plane.text, "found with triangles")) << plane.text;
+  std::string solid = granite;
+  solid.replace(solid.find("plate"), 5, "box");
+  solid.replace(solid.find("\"100 mm\""), 8, "\"100 mm\", \"50 mm\"");
+  solid.replace(solid.find("4 mm"), 4, "25 mm");
+  const Told space = told_by("check", "method = \"fdem3d\"\n" + head + solid);
+  EXPECT_TRUE(has(space.text, "were found with triangles in plane stress")) << space.text;
+}
+
 /// A support between centres, and a packing of too few: with line, name and what is near.
 TEST_F(Doubts, refuse_supports_that_hold_no_element) {
   const std::string thin = packed +

@@ -55,6 +55,7 @@ TEST_F(Program, RefusesBadInputAndWritesNothing) {
   EXPECT_EQ(run("run " + path("balls.toml") + " --set time.end=-1 -o " + path("out")), 2);
   EXPECT_EQ(run("run " + path("balls.toml") + " --no-such-option -o " + path("out")), 2);
   EXPECT_EQ(run("run " + path("balls.toml") + " --threads 0 -o " + path("out")), 2);
+  EXPECT_EQ(run("check " + path("balls.toml") + " --set body.left.radius=1e300"), 2) << output();
   EXPECT_EQ(run("run " + path("balls.toml") + " --set output.color=damgae -o " + path("out")), 2);
   EXPECT_NE(output().find("damage, force, group"), std::string::npos) << output();
   EXPECT_EQ(run("check " + path("balls.toml") + " --set check.elements.value=model.elemnts"), 2);
@@ -358,6 +359,38 @@ TEST_F(Program, ComparesRunsSideBySide) {
   EXPECT_EQ(run("compare " + path("a") + " " + path("nothing")), 2);
   EXPECT_NE(output().find("holds no run"), std::string::npos) << output();
   EXPECT_NE(run("compare " + path("a")), 0);
+}
+
+TEST_F(Program, TellsRatiosOfNegativeNumbersAndUnits) {
+  for (const auto& [name, force] : {std::pair{"a", "-100.0"}, std::pair{"b", "-150.0"}}) {
+    fs::create_directories(path(name));
+    replace_file(path(name) + "/summary.json",
+                 std::string(R"({"status": "done", "exit_code": 0, "steps": 2, "time": 0.5,
+      "energy": {"error_relative": 0.0}, "probe": {"F": {"last": )") +
+                     force + R"(, "min": )" + force + R"(, "max": 0.0}}})");
+    replace_file(path(name) + "/history.csv",
+                 std::string("step,time,F\n-,s,N\n2,0.5,") + force + "\n");
+  }
+  EXPECT_EQ(run("compare " + path("a") + " " + path("b")), 0) << output();
+  const std::size_t row = output().find("probe.F.peak [N] ");
+  ASSERT_NE(row, std::string::npos) << output();
+  EXPECT_NE(output().find("+50 %\n", row), std::string::npos) << output();
+  EXPECT_NE(output().find("time [s] "), std::string::npos) << output();
+}
+
+TEST_F(Program, TellsThatARunWasKilledAndHowFarItGot) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
+  nlohmann::json told = nlohmann::json::parse(read_whole_file(path("out/summary.json")));
+  told["status"] = "running";
+  told["steps"] = 0;
+  replace_file(path("out/summary.json"), told.dump());
+  ASSERT_EQ(run("info " + path("out")), 0) << output();
+  EXPECT_NE(output().find("killed; nothing runs in this folder any more"), std::string::npos)
+      << output();
+  EXPECT_NE(output().find("these numbers are of step 0"), std::string::npos) << output();
+  EXPECT_EQ(output().find("Nothing"), std::string::npos) << output();
+  ASSERT_EQ(run("compare " + path("out") + " " + path("out")), 0) << output();
+  EXPECT_NE(output().find("killed, not to the end of its case"), std::string::npos) << output();
 }
 
 TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
