@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Breccia and a peer on the same slab, in alternating windows on the same machine, or Breccia and MUSEN and DEM-Engine in one table.
 
 Usage: compare.py BRECCIA yade|lammps [--program PEER] [-o RESULT.json] [--threads 1,2] [--windows N]
