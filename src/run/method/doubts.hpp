@@ -13,7 +13,7 @@ namespace breccia {
 /// @param step  at the start  [s]  @param end  time.end  [s]
 std::string long_step_text(double step, double end);
 
-/// Those of the method, and of its step if it is at the start.
+/// Warnings of a method about its case, and about its step if it is at the start.
 /// @param end  time.end; large if the run does not go there  [s]
 std::vector<std::string> doubts_of(Method& method, double end);
 

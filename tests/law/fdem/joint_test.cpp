@@ -143,6 +143,25 @@ TEST(Joint, pulled_apart_books_its_fracture_energy_and_breaks) {
   }
 }
 
+/// Carries triangle 0 straight on from one offset from its start to another, and evaluates its
+/// joint on the way: visit(way) after each step, which went that way.
+template <class Visit>
+void carry(World& w, const TriangleNodes& start, Vec2& from, const Vec2& to, const Visit& visit) {
+  const int steps = 1000;
+  w.last_dt = 1e-8;
+  const Vec2 way = (1.0 / steps) * (to - from);
+  for (int i = 1; i <= steps; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      NodeState& n = nodes(w, 0).at[k];
+      n.velocity = (1.0 / w.last_dt) * way;
+      n.position = start.at[k].position + from + static_cast<double>(i) * way;
+    }
+    HostRun{}.joint_forces(w);
+    visit(way);
+  }
+  from = to;
+}
+
 /// Pressed, slipped, let go, slipped back: the way round takes T^3/(12 p_f/h) times
 /// (1/c - 1/(c + sigma tan phi)), T = p_f s/h, an area, which a joint that stays whole does not
 /// store.
@@ -158,21 +177,13 @@ TEST(Joint, books_what_pressure_takes_on_its_slip) {
     const auto booked = [&] { return w.joints.work.data()[0].slide; };
     double given = 0.0;
     Vec2 from{};
+    Vec2 before{};
     const auto go = [&](const Vec2& to) {
-      const int steps = 1000;
-      w.last_dt = 1e-8;
-      const Vec2 way = (1.0 / steps) * (to - from);
-      for (int i = 1; i <= steps; ++i) {
-        for (int k = 0; k < 3; ++k) {
-          NodeState& n = nodes(w, 0).at[k];
-          n.velocity = (1.0 / w.last_dt) * way;
-          n.position = start.at[k].position + from + static_cast<double>(i) * way;
-        }
-        const Vec2 before = force.data()[0].first + force.data()[0].second;
-        HostRun{}.joint_forces(w);
-        given -= 0.5 * dot(before + force.data()[0].first + force.data()[0].second, way);
-      }
-      from = to;
+      carry(w, start, from, to, [&](const Vec2& way) {
+        const Vec2 now = force.data()[0].first + force.data()[0].second;
+        given -= 0.5 * dot(before + now, way);
+        before = now;
+      });
     };
     const double p = -pressed / slope, s = slid / slope;
     go({0.0, p});
@@ -216,23 +227,13 @@ TEST(Joint, has_never_spent_less_than_nothing) {
   Vec2 from{};
   double least = 0.0, most = 0.0, taken = 0.0;
   const auto go = [&](const Vec2& to) {
-    const int steps = 1000;
-    w.last_dt = 1e-8;
-    const Vec2 way = (1.0 / steps) * (to - from);
-    for (int i = 1; i <= steps; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        NodeState& n = nodes(w, 0).at[k];
-        n.velocity = (1.0 / w.last_dt) * way;
-        n.position = start.at[k].position + from + static_cast<double>(i) * way;
-      }
-      HostRun{}.joint_forces(w);
+    carry(w, start, from, to, [&](const Vec2&) {
       taken = std::min(taken, w.joints.work.data()[0].slide);
       const double fracture = energies(w).balance.fracture;
       least = std::min(least, fracture);
       EXPECT_GE(fracture, (1.0 - 1e-9) * most);
       most = std::max(most, fracture);
-    }
-    from = to;
+    });
   };
   const double slope = 150e9 / 1e-3, p = -40e6 / slope, s = 28e6 / slope;
   go({s, 0.0});
