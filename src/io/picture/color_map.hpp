@@ -32,7 +32,7 @@ ColorMap map_named(const std::string& name);
 /// The colour at `share`, which is held to 0..1; magenta for what is not a number.
 Color map_color(ColorMap map, float share);
 
-/// A colour for category `number`: distinct for the first ten, then again from the start.
+/// A colour for category `number`: distinct for the first 32, then again from the start.
 Color category_color(std::size_t number);
 
 }  // namespace breccia

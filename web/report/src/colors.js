@@ -1,4 +1,4 @@
-// Colour maps: the nodes of src/io/color_map.cpp, at even distances.
+// Colour maps: the nodes of src/io/picture/color_map.cpp, at even distances.
 
 export const MAPS = {
   damage: ["#ded6c6", "#e9ca9a", "#f0a85a", "#e67a2e", "#cf4620", "#a81c18", "#6e0a14"],
@@ -8,7 +8,11 @@ export const MAPS = {
   grey: ["#25272b", "#f2f2f0"],
 };
 
-export const CATEGORIES = ["#ded6c6", "#4a78a8", "#5c5f66", "#6aa56b", "#d98c3f", "#8d6bb1", "#46a3a8", "#c25b6e", "#9a8a3c", "#d0a2c4"];
+export const CATEGORIES = [
+  "#ded6c6", "#4a78a8", "#5c5f66", "#6aa56b", "#d98c3f", "#8d6bb1", "#46a3a8", "#c25b6e", "#9a8a3c", "#d0a2c4",
+  "#481888", "#184818", "#c8c828", "#187818", "#781858", "#48d888", "#5848b8", "#8898e8", "#d8e888", "#284878", "#18c8e8",
+  "#2888e8", "#288878", "#981838", "#883898", "#88d8e8", "#986848", "#d878c8", "#88b898", "#d8a818", "#785888", "#3868c8",
+];
 
 // Lines of charts: Okabe and Ito (2008), distinct for colour-blind readers.
 export const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8b6f2a", "#7d7d7d"];
