@@ -249,12 +249,16 @@ class DemBodyChecks {
             b.rebar.interface_law, prepare::all_names(config_.materials));
     const BodyConfig* host = prepare::item_named(config_.bodies, b.rebar.in);
     const bool drawn = !b.rebar.drawn.empty();
+    require(host != nullptr, ".rebar.in = {:?} is not a body; there are: {}", b.rebar.in,
+            prepare::all_names(config_.bodies));
+    if (host == nullptr) return;
     const bool fits =
-        host != nullptr &&
-        (host->shape == "box" || (drawn && (host->shape == "sphere" || host->shape == "cylinder" ||
-                                            host->shape == "file")));
-    require(fits, ".rebar.in = {:?} is not a {} body; there are: {}", b.rebar.in,
-            drawn ? "packed" : "box", prepare::all_names(config_.bodies));
+        host->shape == "box" ||
+        (drawn && (host->shape == "sphere" || host->shape == "cylinder" || host->shape == "file"));
+    require(fits, ".rebar.in = {:?} is a body of shape {}: {}", b.rebar.in, host->shape,
+            drawn ? "bars lie in bodies of shape box, cylinder, sphere or file"
+                  : "mats of bars lie in boxes; in cylinders, spheres and files bars are drawn one "
+                    "by one ([[body.rebar.bar]])");
     if (!fits) return;
     const auto problems = bar_problems(b.rebar, *host);
     for (const std::string& problem : problems) require(false, ".rebar: {}", problem);

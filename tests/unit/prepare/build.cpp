@@ -394,7 +394,8 @@ TEST(Refused, BarsThatDoNotFitTheirBody) {
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.cover = 0.04; }), "layers"));
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.bars = 26; }), "beside each other"));
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.elements = 26; }), "along a bar"));
-  EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.in = "wall"; }), "not a box body"));
+  EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.in = "wall"; }),
+                       "body.steel.rebar.in = \"wall\" is not a body; there are: slab, steel"));
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.velocity = {1.0, 0.0, 0.0}; }), "bars move"));
 }
 

@@ -128,6 +128,26 @@ std::string problem_of(const Config& config) {
   return "";
 }
 
+TEST(Rebar, in_a_body_of_another_shape_is_refused_with_the_shapes_that_there_are) {
+  Config config = beam();
+  config.bodies[0].shape = "stl";
+  config.bodies[0].file = "bone.stl";
+  EXPECT_NE(
+      problem_of(config).find("rebar.in = \"beam\" is a body of shape stl: bars lie in bodies of "
+                              "shape box, cylinder, sphere or file"),
+      std::string::npos)
+      << problem_of(config);
+  config.bodies[0] = box_body("beam", {}, 600, 0.5);
+  config.bodies[0].shape = "cylinder";
+  config.bodies[0].radius = 0.08;
+  config.bodies[0].length = 0.2;
+  config.bodies[1].rebar.drawn.clear();
+  EXPECT_NE(problem_of(config).find(
+                "rebar.in = \"beam\" is a body of shape cylinder: mats of bars lie in boxes"),
+            std::string::npos)
+      << problem_of(config);
+}
+
 TEST(Rebar, that_does_not_fit_is_refused_with_its_place) {
   const auto with = [](const std::function<void(RebarConfig&)>& change) {
     Config config = beam();
