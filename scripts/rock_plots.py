@@ -24,7 +24,7 @@ import matplotlib.pyplot as plt
 import arch_thrust
 import beam_reference
 import domino_wave
-import rock_tables
+import rock_measures
 
 
 def tension(axes, results):
@@ -37,8 +37,8 @@ def tension(axes, results):
 
 def crack(axes, results):
     for r in results:
-        front, _ = rock_tables.front_energy(r)
-        axes.plot([1e3 * x for x, _ in front], [1e3 * f / rock_tables.CRACK_ENERGY for _, f in front], label=f"{r.value('model.triangles'):.0f} triangles")
+        front, _ = rock_measures.front_energy(r)
+        axes.plot([1e3 * x for x, _ in front], [1e3 * f / rock_measures.CRACK_ENERGY for _, f in front], label=f"{r.value('model.triangles'):.0f} triangles")
     axes.plot([5, 35], [15, 45], color="0.5", lw=1, ls="--", label="slope 1: G_I")
     axes.set(xlabel="growth of the crack, mm", ylabel="fracture energy / G_I, mm")
 
@@ -233,7 +233,7 @@ def main():
     parser.add_argument("-o", "--out", required=True)
     options = parser.parse_args()
     figure, axes = plt.subplots(figsize=(6.4, 4.0))
-    read = lambda path: [rock_tables.Result(path)] if path.is_dir() else csv.DictReader(path.open(newline=""))
+    read = lambda path: [rock_measures.Result(path)] if path.is_dir() else csv.DictReader(path.open(newline=""))
     kinds[options.kind](axes, [one for path in options.results for one in read(path)])
     axes.grid(alpha=0.3)
     if axes.get_legend_handles_labels()[0] and not axes.get_legend():

@@ -22,213 +22,12 @@ import sys
 import time
 import tomllib
 
-from crack_networks import ends, network_from, networks
+import rock_measures as measures
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASES, MATERIALS = ROOT / "cases", ROOT / "src/io/case/materials.toml"
 SEEDS = (1, 2, 3)
 RECORD = ["table", "setting", "run", "commit", "device", "hash", "seconds"]
-
-
-# ---------------------------------------------------------------- what a run left
-
-class Result:
-    """The files of a finished run."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        self.summary = json.loads((folder / "summary.json").read_text())
-
-    def value(self, path):
-        found = self.summary
-        for key in path.split("."):
-            found = found[key]
-        return float(found)
-
-    def rows(self, name):
-        """Rows of history.csv or cracks.csv as numbers; the second line holds units."""
-        with open(self.folder / name, newline="") as file:
-            rows = list(csv.DictReader(file))[1:]
-        return [{key: float(value) for key, value in row.items() if key != "stage"} for row in rows]
-
-    def cracks(self):
-        """Broken joints with their ends at the start, by time."""
-        return sorted(self.rows("cracks.csv"), key=lambda c: c["time"])
-
-    def strongest(self, probe):
-        ends = self.summary["probe"][probe]
-        return max(abs(ends["min"]), abs(ends["max"]))
-
-
-def tension(r, setting):
-    width, strength, energy = 0.05, 3e6, 10.0
-    return {
-        "strength / f_t": r.strongest("force") / (strength * width),
-        "fracture energy / (G_I A)": r.value("energy.fracture") / (energy * width),
-        "of it in broken joints": sum(c["energy"] for c in r.cracks()) / r.value("energy.fracture"),
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-CRACK_ENERGY, CRACK_START = 6.0, -0.015  # of cases/crack_growth: G_I, and where its notch ends
-
-
-def front_energy(r):
-    """Growth of the crack with the fracture energy at the moment, each time that its tip moves on; and its growth at last."""
-    history, front, reached = r.rows("history.csv"), [], CRACK_START
-    for c in r.cracks():
-        if (x := max(c["x0"], c["x1"])) > reached:
-            reached = x
-            front.append((x - CRACK_START, next(row["fracture"] for row in history if row["time"] >= c["time"])))
-    return front, reached - CRACK_START
-
-
-def slope(r):
-    """Fracture energy over growth while the crack runs from 5 to 35 mm ahead of its notch, least squares, J/m2."""
-    front, growth = front_energy(r)
-    return statistics.linear_regression(*zip(*[(x, f) for x, f in front if 5e-3 < x < 35e-3])).slope, growth
-
-
-def crack(r, setting):
-    """The slope of fracture energy over growth, least squares from 5 to 35 mm ahead of the notch, is the energy of the crack with the
-    rock that softens beside it; the zone that softens ahead moves along and does not count."""
-    energy, growth = slope(r)
-    return {
-        "fracture energy of growth / (G_I A)": energy / CRACK_ENERGY,
-        "length of the path / growth": sum(math.dist(*ends(c)) for c in r.cracks()) / growth,
-        "grown, mm": 1e3 * growth,
-        "largest force, kN/m": 1e-3 * r.strongest("force"),
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def energy(r, setting):
-    """What a crack through a rock of the library takes, over what its joints ask for."""
-    shown, growth = slope(r)
-    return {
-        "shown, J/m2": shown,
-        "over G_I": shown / setting["G_I, J/m2"],
-        "grown, mm": 1e3 * growth,
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def disc(r, setting):
-    strength, diameter, half = 5e6, 0.04, math.radians(10.0)
-    load = r.strongest("force_top")
-    unit = 2.0 * load / (math.pi * diameter) / strength
-    history = r.rows("history.csv")
-    peak = max(history, key=lambda row: row["force_top"])
-    first = r.cracks()[:1]
-    return {
-        "2P/(pi D f_t)": unit,
-        "over Hondros": unit * (math.sin(2.0 * half) / half - 1.0),
-        "first break at abs(y)/R": abs(0.5 * (first[0]["y0"] + first[0]["y1"])) / 0.02 if first else math.nan,
-        "kinetic / work at the peak": peak["kinetic"] / peak["work"],
-        "jaws out of balance": abs(peak["force_top"] + peak["force_bottom"]) / peak["force_top"],
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def kalthoff(r, setting):
-    tip = (0.05, 0.025)
-    crack = [c for c in network_from(r.cracks(), tip, 2.5e-3 + setting["edge"]) if c["y"] > 0.02]
-    if not crack:
-        return {"angle": math.nan}
-    far, when = max(((e, c["time"]) for c in crack for e in ends(c)), key=lambda ec: math.dist(ec[0], tip))
-    start = crack[0]["time"]
-    early = max((e for c in crack for e in ends(c) if math.dist(e, tip) < 0.04), key=lambda e: math.dist(e, tip))
-    return {
-        "angle of the first 40 mm, degrees": math.degrees(math.atan2(early[1] - tip[1], early[0] - tip[0])),
-        "of all, degrees": math.degrees(math.atan2(far[1] - tip[1], far[0] - tip[0])),
-        "first break, us": 1e6 * start,
-        "length, mm": 1e3 * math.dist(far, tip),
-        "mean speed / c_R": math.dist(far, tip) / (when - start) / 2799.0,
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def branching(r, setting):
-    crack = network_from(r.cracks(), (0.0, 0.0), 2.0 * setting["edge"])
-    if not crack:
-        return {"first break, us": math.nan}
-    front, reached = [], 0.0
-    for c in crack:
-        x = max(c["x0"], c["x1"])
-        if x > reached:
-            reached = x
-            front.append((c["time"], x))
-    window, fastest = 8e-6, 0.0
-    for t0, x0 in front:
-        later = [(t, x) for t, x in front if t - t0 >= window]
-        if later:
-            fastest = max(fastest, (later[0][1] - x0) / (later[0][0] - t0))
-    # It has branched where a second crack runs at least 2.5 mm beside.
-    wide = []
-    for k in range(1, 50):
-        inside = [c for c in crack if 1e-3 * (k - 1) <= c["x"] < 1e-3 * k]
-        if inside and max(c["y"] for c in inside) - min(c["y"] for c in inside) > 2.5e-3:
-            wide.append((k - 0.5, min(c["time"] for c in inside)))
-    up = max((c["x1"] for c in crack if c["y"] > 2e-3), default=0.0)
-    down = max((c["x1"] for c in crack if c["y"] < -2e-3), default=0.0)
-    return {
-        "first break, us": 1e6 * r.cracks()[0]["time"],
-        "branches at x, mm": wide[0][0] if wide else math.nan,
-        "and at, us": 1e6 * wide[0][1] if wide else math.nan,
-        "fastest in 8 us / c_R": fastest / 2125.0,
-        "upper branch to x, mm": 1e3 * up,
-        "lower branch to x, mm": 1e3 * down,
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def spall(r, setting):
-    width = 0.012
-    planes = []
-    for n in networks(r.cracks()):
-        ys = [e[1] for c in n for e in ends(c)]
-        if max(ys) - min(ys) > 0.9 * width:
-            planes.append((min(c["time"] for c in n), 300.0 - 1e3 * statistics.mean(c["x"] for c in n)))
-    planes.sort()
-    history = r.rows("history.csv")
-    free = [row["end"] for row in history if row["time"] < 0.24e-3]
-    return {
-        "first plane from the end, mm": planes[0][1] if planes else math.nan,
-        "at, us": 1e6 * planes[0][0] if planes else math.nan,
-        "planes": float(len(planes)),
-        "largest velocity of the end, m/s": max(free),
-        "velocity of the last 45 mm, m/s": r.value("probe.cap.last"),
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def triaxial(r, setting):
-    bears = 20.0 * math.cos(math.pi / 6.0) / (1.0 - math.sin(math.pi / 6.0)) + 3.0 * setting["pressure"]
-    history = r.rows("history.csv")
-    peak = max(history, key=lambda row: row["force_top"])
-    return {
-        "sigma_1, MPa": r.strongest("force_top") / 0.03 / 1e6,
-        "over Mohr-Coulomb": r.strongest("force_top") / 0.03 / 1e6 / bears,
-        "kinetic / work at the peak": peak["kinetic"] / peak["work"],
-        "ledger error": r.value("energy.error_relative"),
-    }
-
-
-def dominoes(r, setting):
-    """Speed from the times at which middles have moved by 1 mm, over the second half of the row."""
-    history = r.rows("history.csv")
-    count = sum(1 for key in history[0] if key.startswith("x") and key[1:].isdigit())
-    moved = []
-    for k in range(1, count + 1):
-        start = history[0][f"x{k}"]
-        moved.append(next((row["time"] for row in history if row[f"x{k}"] > start + 1e-3), math.nan))
-    half, last = count // 2, count - 1
-    speed = (last - half) * 0.025 / (moved[last] - moved[half])
-    return {
-        "speed, m/s": speed,
-        "over sqrt(g h)": speed / math.sqrt(9.81 * 0.05),
-        "ledger error": r.value("energy.error_relative"),
-    }
 
 
 # ---------------------------------------------------------------- campaigns
@@ -256,6 +55,13 @@ def crack_runs():
     for criterion, edges in (("rock", (3e-3, 2e-3, 1e-3)), ("edge", (3e-3, 2e-3))):
         for setting, sets in over_meshes("plate", edges, criterion=criterion):
             yield setting, {**sets, "joints.criterion": criterion}
+
+
+def shear_runs():
+    """The rows of a crossed mesh lie in the crack's plane; free ones do not."""
+    yield ({"edge": 2.5e-3, "mesh": "aligned"},
+           {"body.strip.mesh_size": 2.5e-3, "body.strip.structured": "true", "body.strip.pattern": "crossed", "body.strip.jitter": 0.0})
+    yield from over_meshes("strip", (3e-3, 2e-3, 1.4e-3), mesh="free")
 
 
 def energy_runs():
@@ -290,21 +96,55 @@ def triaxial_runs():
                         "time.end": 1.8e-3 if pressure > 15.0 else 1.4e-3})
 
 
+def compression_runs():
+    """Without a cell, by friction angle and by the zone in which joints slide to their end, E' G_II/c^2, over the width of 30 mm."""
+    few, more = (30, 45, 60), (20, 30, 45, 60)
+    for energy, edges, angles in ((250.0, (3e-3, 2e-3, 1.4e-3), more), (50.0, (3e-3,), few), (1000.0, (2e-3,), few)):
+        for edge in edges:
+            for degrees in angles:
+                for setting, sets in over_meshes("rock", (edge,)):
+                    bears = measures.mohr_coulomb(10e6, degrees)
+                    softer = {} if energy == 250.0 else {"material.rock.joint.energy_slide": energy, "material.rock.joint.energy_open": 0.2 * energy}
+                    yield ({"phi, degrees": degrees, "E' G_II/(c^2 W)": round(20e9 / 0.96 * energy / 1e14 / 0.03, 2), **setting},
+                           {**sets, "load.cell_left.pressure": 0.0, "load.cell_right.pressure": 0.0,
+                            "material.rock.joint.friction_angle": f'"{degrees} deg"', "material.rock.friction": round(math.tan(math.radians(degrees)), 5),
+                            "time.end": round(0.2e-3 + (1.9 if energy > 500.0 else 1.35) * bears / 18e9 * 0.06 / 0.2, 6), **softer})
+
+
+def servos_runs():
+    """Rock that servos press from all sides with 10 MPa."""
+    for setting, sets in over_meshes("rock", (5e-3, 3.5e-3, 2.5e-3)):
+        yield setting, {**sets, "body.rock.jitter": 0.1}
+
+
+def granite_runs():
+    """Grains and mesh change with the seed; the paper's size, and edges of 1 mm by both criteria."""
+    for edge, criterion in ((1e-3, "edge"), (1e-3, "rock"), (0.5e-3, "edge"), (0.5e-3, "rock")):
+        for seed in (1, 2, 3, 4, 5):
+            coarser = {"body.disc.mesh_size": edge} if edge > 0.5e-3 else {}
+            shorter = {"time.end": 0.45e-3} if criterion == "rock" else {}  # splits at 0.34 ms
+            yield {"edge": edge, "criterion": criterion}, {"seed": seed, "joints.criterion": criterion, **coarser, **shorter}
+
+
 def dominoes_runs():
     for friction in (0.0, 0.1, 0.3):
         yield {"friction of stones": friction}, {"material.stone.friction": friction}
 
 
 CAMPAIGNS = {  # name: case, runs, quantities
-    "tension": ("tension_free_mesh", tension_runs, tension),
-    "crack": ("crack_growth", crack_runs, crack),
-    "energy": ("crack_growth", energy_runs, energy),
-    "disc": ("homogeneous_disc", disc_runs, disc),
-    "kalthoff": ("kalthoff", lambda: over_meshes("plate", (2e-3, 1.4e-3, 1e-3)), kalthoff),
-    "branching": ("branching", lambda: over_meshes("plate", (1.25e-3, 1e-3, 0.7e-3)), branching),
-    "spall": ("spall_bar", lambda: over_meshes("bar", (4e-3, 2.5e-3, 1.5e-3)), spall),
-    "triaxial": ("triaxial_envelope", triaxial_runs, triaxial),
-    "dominoes": ("dominoes", dominoes_runs, dominoes),
+    "tension": ("tension_free_mesh", tension_runs, measures.tension),
+    "crack": ("crack_growth", crack_runs, measures.crack),
+    "shear": ("crack_growth/shear.toml", shear_runs, measures.shear),
+    "energy": ("crack_growth", energy_runs, measures.energy),
+    "disc": ("homogeneous_disc", disc_runs, measures.disc),
+    "kalthoff": ("kalthoff", lambda: over_meshes("plate", (2e-3, 1.4e-3, 1e-3)), measures.kalthoff),
+    "branching": ("branching", lambda: over_meshes("plate", (1.25e-3, 1e-3, 0.7e-3)), measures.branching),
+    "spall": ("spall_bar", lambda: over_meshes("bar", (4e-3, 2.5e-3, 1.5e-3)), measures.spall),
+    "triaxial": ("triaxial_envelope", triaxial_runs, measures.triaxial),
+    "compression": ("triaxial_envelope", compression_runs, measures.compression),
+    "servos": ("triaxial/rock.toml", servos_runs, measures.servos),
+    "granite": ("brazilian_disc", granite_runs, measures.granite),
+    "dominoes": ("dominoes", dominoes_runs, measures.dominoes),
 }
 
 
@@ -330,7 +170,8 @@ def prepare(binary, folder, jobs):
         if model.exists():
             return
         sets = {**job["sets"], "output.frames": 1, "output.pictures": "false", "output.fields": "false"}
-        done = call([binary, "prepare", CASES / job["case"] / "case.toml", "-o", model,
+        case = CASES / job["case"]
+        done = call([binary, "prepare", case if case.suffix else case / "case.toml", "-o", model,
                      *(part for key, value in sets.items() for part in ("--set", f"{key}={value}"))])
         if done.returncode != 0:
             sys.exit(f"{job['id']}: {done.stderr}")
@@ -383,7 +224,7 @@ def collected(folder):
         done = folder / "runs" / job["id"]
         if not finished(done):
             continue
-        result = Result(done)
+        result = measures.Result(done)
         summary = result.summary
         yield {"table": job["campaign"], "setting": json.dumps(job["setting"]), "run": job["id"], "commit": summary["breccia"]["commit"],
                "device": summary["machine"]["device"], "hash": summary["state_hash"], "seconds": sum(summary["stages_s"].values()),
