@@ -25,12 +25,14 @@ beside() {  # NAME SHARE COMMAND...
   shift 2
   JOBS=$((JOBS / 4)) part "$name" 0.85 "$@" &
 }
+concrete() { BRECCIA=build/release/breccia LIBRARY_TESTS=all python3 tests/program/library_test.py 2>&1; }
 attacks() { python3 tests/attack/run.py --jobs "$JOBS" --hours "$(awk "BEGIN { print $LIMIT / 3600 }")"; }
 PARTS=methods beside compilers 0.1 scripts/compilers.sh
 beside thread 0.25 scripts/sanitize.sh thread
 beside address 0.15 scripts/sanitize.sh address
 beside mpich 0.05 scripts/mpich.sh
 beside attacks 0.3 attacks
+beside concrete 0 concrete
 wait
 part under_load 0.15 scripts/under_load.sh 20
 cat build/nightly/attacks.log

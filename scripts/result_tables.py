@@ -110,7 +110,7 @@ def impact(kind):
 
 MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambda which: library_tables.markdown(lines_of("library"), which),
           "criterion": lambda _: concrete_tables.criterion(lines_of("criterion")), "choice": lambda _: concrete_tables.choice(lines_of("choice")),
-          "reinforced": lambda what: (reinforced_tests.drops if what == "drops" else reinforced_tests.markdown)(lines_of("reinforced")),
+          "reinforced": lambda what: reinforced_tests.drops(lines_of("reinforced")) if what == "drops" else reinforced_tests.markdown(lines_of("reinforced"), what),
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
           "published": lambda test: published_tests.markdown(lines_of("published"), test),
