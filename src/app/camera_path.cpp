@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "exec/error.hpp"
@@ -61,7 +62,10 @@ std::string clip_between(const std::string& a, const std::string& b, double shar
 
 }  // namespace
 
-CameraPath::CameraPath(const std::string& path) : file_(read_case<CameraFile>(path, {})) {
+CameraPath::CameraPath(const std::string& path) {
+  if (!std::filesystem::exists(path))
+    throw InputError(path + ": there is no such camera file; nothing was drawn.");
+  file_ = read_case<CameraFile>(path, {});
   const auto refuse = [&](const std::string& why) {
     throw InputError(with_lines("1 problem; nothing was drawn.\n  " + why, path));
   };

@@ -46,6 +46,12 @@ std::string about(double count) {
   return "about " + count_text(count < 100.0 ? count : std::round(count / tens) * tens);
 }
 
+/// "about 1 element", "about 460 triangles"
+std::string about_so_many(double count, std::string items) {
+  if (count == 1.0 && items.ends_with('s')) items.pop_back();
+  return about(count) + ' ' + items;
+}
+
 /// "18 ns", "1.1 us"
 std::string short_time(double seconds) {
   const bool nanoseconds = seconds < 0.995e-6;
@@ -246,8 +252,8 @@ struct CheckCommand {
       fmt::print("  size    known when bodies are meshed or filled: check --model\n");
       return;
     }
-    fmt::print("  size    {} {}", about(f.items), f.item_name);
-    if (f.bonds > 0.0) fmt::print(", {} {}", about(f.bonds), f.bond_name);
+    fmt::print("  size    {}", about_so_many(f.items, f.item_name));
+    if (f.bonds > 0.0) fmt::print(", {}", about_so_many(f.bonds, f.bond_name));
     fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
                harmless(f.step_rule));
     const char* const at_most = f.may_end_early ? "at most " : "";

@@ -18,11 +18,13 @@
 #include "io/checkpoint.hpp"
 #include "io/harmless.hpp"
 #include "io/json.hpp"
+#include "io/picture/png_notes.hpp"
 #include "io/round_numbers.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 #include "report/table.hpp"
 #include "run/results/checkpoints.hpp"
+#include "run/results/picture_notes.hpp"
 #include "run/results/result_folder.hpp"
 
 namespace breccia::app {
@@ -121,7 +123,10 @@ void describe_folder(const std::string& path) {
   const std::string summary = path + "/summary.json";
   if (!fs::exists(summary))
     throw InputError(path + ": this folder holds no run (there is no summary.json)" +
-                     (fs::exists(path + "/sweep.csv") ? "; of a sweep read sweep.md" : ""));
+                     (fs::exists(path + "/sweep.csv") ? "; of a sweep read sweep.md"
+                      : fs::exists(path + "/../summary.json")
+                          ? "; it is a part of one, which is the folder above it"
+                          : ""));
   const Told told(summary);
   const bool unfinished = told.text("/status") == "running";
   if (unfinished && !ResultFolder::is_locked(path))
@@ -226,11 +231,32 @@ void describe_table(const std::string& path) {
                  text.substr(0, names_end), text.substr(names_end + 1, units_end - names_end - 1));
 }
 
+/// A picture of a run, by the texts in it.
+void describe_picture(const std::string& path) {
+  const std::vector<PngNote> notes = notes_of(read_whole_file(path), path);
+  if (note(notes, "Software").empty())
+    throw InputError(path + ": this picture holds no text of Breccia");
+  print_harmless("{}: a picture by {}\n", path, note(notes, "Software"));
+  tell("case", fmt::format("{}, seed {}", note(notes, "Case"), note(notes, "Seed")));
+  if (note(notes, "Pictures").empty()) {
+    const PictureRecipe recipe = recipe_of(notes, path);
+    tell("shows", fmt::format("{}, step {}", time_text(recipe.moment.time),
+                              count_text(static_cast<double>(recipe.moment.step))));
+    if (recipe.moment.hash) tell("hash", fmt::format("{:016x}", *recipe.moment.hash));
+  }
+  tell("runs", note(notes, "Runs"));
+  tell("again", "breccia verify " + path);
+}
+
 void describe(const std::string& path) {
   if (fs::is_directory(path)) return describe_folder(path);
   const std::string kind = fs::path(path).extension().string();
   if (kind == ".csv") return describe_table(path);
   if (kind == ".vtu" || kind == ".hdf") return describe_frame(path);
+  if (kind == ".png") return describe_picture(path);
+  for (const char* const shown : {".svg", ".pdf", ".mp4", ".webm", ".gif"})
+    if (kind == shown)
+      throw InputError(path + ": a drawing or film; breccia verify makes it again and compares");
   if (kind == ".json" || kind == ".toml") {
     print_harmless("{}", read_whole_file(path));
     return;
@@ -243,7 +269,7 @@ void describe(const std::string& path) {
 void add_info(CLI::App& program) {
   const auto path = std::make_shared<std::string>();
   CLI::App* const command = program.add_subcommand(
-      "info", "what a result folder, a frame, a checkpoint or a model holds");
+      "info", "what a result folder, a frame, a picture, a checkpoint or a model holds");
   command->add_option("FILE", *path, "a file a run left, or its folder")->required();
   command->callback([path] { describe(*path); });
 }

@@ -294,7 +294,7 @@ void add_mesh(CLI::App& program) {
   const auto path = std::make_shared<std::string>();
   const auto frame = std::make_shared<int>(-1);
   info->add_option("FILE", *path,
-                   "a mesh (.msh, .inp), spheres (.csv, .txt, a dump or data of LAMMPS), a\n"
+                   "a mesh (.msh, .inp), spheres (.csv, .txt, a dump or data of LAMMPS), a "
                    "prepared model (.br) or a result folder")
       ->required();
   info->add_option("--frame", *frame, "of a result folder; default: the last")->type_name("N");
@@ -311,12 +311,12 @@ void add_convert(CLI::App& program) {
       "convert", "write a mesh, a packing or the frames of a run in another format");
   convert
       ->add_option("IN", words->from,
-                   "a mesh (.msh, .inp), spheres (.csv, .txt, a dump or data of LAMMPS), a\n"
+                   "a mesh (.msh, .inp), spheres (.csv, .txt, a dump or data of LAMMPS), a "
                    "prepared model (.br) or a result folder")
       ->required();
   convert
       ->add_option("OUT", words->to,
-                   "of a mesh .msh (Gmsh 2.2), .inp (Abaqus), .vtu or .hdf (VTKHDF); of spheres\n"
+                   "of a mesh .msh (Gmsh 2.2), .inp (Abaqus), .vtu or .hdf (VTKHDF); of spheres "
                    ".csv, .vtu or .hdf; with --frames a folder")
       ->required();
   CLI::Option* const frame =

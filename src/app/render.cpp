@@ -91,6 +91,8 @@ struct RenderCommand {
       throw InputError("--camera is for pictures and films; a drawing is seen from above: " + file);
     options.hidden = {hidden.begin(), hidden.end()};
     if (!range.empty()) options.range = range_of(range);
+    if (options.log && options.range && options.range->low < 0.0)
+      throw InputError("--range " + range + ": --log needs values above 0, such as 1:1000");
     if (!size.empty()) set_size();
     if (!camera.empty()) path_of_camera.emplace(camera);
     const bool turns = film && path_of_camera && path_of_camera->pictures() > 0;
@@ -324,7 +326,7 @@ void add_looks(CLI::App& command, RenderCommand& render) {
   options.height = 0;
   command
       .add_option("--fit", render.fit,
-                  "the camera shows where bodies are at the start and as far as\nthey go (run), in "
+                  "the camera shows where bodies are at the start and as far as they go (run), in "
                   "each frame (frame), or at the start (first)")
       ->type_name("WHEN")
       ->check(CLI::IsMember({"run", "frame", "first"}))
@@ -333,12 +335,11 @@ void add_looks(CLI::App& command, RenderCommand& render) {
   command.add_flag("--xray", options.xray,
                    "fade what bars, cracks and broken links lie in, and draw these");
   command.add_flag("--forces", options.forces,
-                   "forces of contacts without links as lines, as wide as they are\nlarge");
+                   "forces of contacts without links as lines, as wide as they are large");
   command.add_option("--arrows", options.arrows, "vectors: velocity, displacement, force")
       ->type_name("FIELD");
-  command.add_flag(
-      "--crosses", options.crosses,
-      "principal stresses in the plane of the picture: tension red,\ncompression blue");
+  command.add_flag("--crosses", options.crosses,
+                   "principal stresses in the plane of the picture: tension red, compression blue");
   command.add_option("--scale", options.scale, "draw displacements so many times")
       ->type_name("N")
       ->check(CLI::Range(0.0, 1e9))
@@ -358,7 +359,7 @@ void add_looks(CLI::App& command, RenderCommand& render) {
       ->type_name("TEXT");
   command
       .add_option("--size", render.size,
-                  "pixels, such as 1600x1200, or a width: then as high as the model\nneeds; "
+                  "pixels, such as 1600x1200, or a width: then as high as the model needs; "
                   "default: 1280")
       ->type_name("WxH");
   command.add_option("--width", options.width, "of a picture, in pixels")->type_name("PIXELS");
@@ -376,7 +377,7 @@ void add_render(CLI::App& program) {
   command
       ->add_option(
           "-o,--out", render->file,
-          "a picture .png, a drawing of a plane case .svg or .pdf, or a film\n.mp4, .webm or .gif; "
+          "a picture .png, a drawing of a plane case .svg or .pdf, or a film .mp4, .webm or .gif; "
           "default: DIR/render.png")
       ->type_name("FILE");
   command

@@ -19,6 +19,7 @@
 #include "io/emphasis.hpp"
 #include "io/harmless.hpp"
 #include "run/machine/exec_choice.hpp"
+#include "run/machine/set_up_limit.hpp"
 #include "run/machine/signals.hpp"
 #include "run/run.hpp"
 
@@ -61,6 +62,8 @@ struct ResumeCommand {
   int execute(Communicator* ranks) const {
     const auto begin = std::chrono::steady_clock::now();
     StopSignals signals;
+    std::optional<SetUpLimit> limit;
+    if (leads(ranks)) limit.emplace(wall_time(options.max_wall), options.max_wall);
     StageTimers timers;
     Exec exec;
     Case read;
@@ -93,6 +96,7 @@ struct ResumeCommand {
       if (!leads(ranks)) checkpoint.reset();
     });
     const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
+    limit.reset();
     signals.answer_between_steps();
     timers.clear();
     method->load(checkpoint ? &*checkpoint : nullptr);

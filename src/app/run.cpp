@@ -12,6 +12,7 @@
 #include "app/run_options.hpp"
 #include "domain/together.hpp"
 #include "run/machine/exec_choice.hpp"
+#include "run/machine/set_up_limit.hpp"
 #include "run/machine/signals.hpp"
 
 namespace breccia::app {
@@ -25,6 +26,8 @@ struct RunCommand {
   int execute(Communicator* ranks) const {
     const auto begin = std::chrono::steady_clock::now();
     StopSignals signals;
+    std::optional<SetUpLimit> limit;
+    if (leads(ranks)) limit.emplace(wall_time(options.max_wall), options.max_wall);
     StageTimers timers;
     const Existing existing = force ? Existing::replace : Existing::refuse;
     Exec exec;
@@ -39,6 +42,7 @@ struct RunCommand {
       if (leads(ranks)) ResultFolder::check_free(out, existing);
     });
     const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
+    limit.reset();
     signals.answer_between_steps();
     RunPlan plan = plan_of(read, options, exec, ranks);
     plan.begin = begin;

@@ -135,8 +135,9 @@ struct ProbeConfig {
         "it), "
         "position, velocity; or a bolt, each of its segments; empty reads all elements");
     key("quantity", quantity, quantity_words(in_space | in_plane | of_wall | of_bolt | in_solid),
-        "what is read from each element; stress, strain and displacement of a region, broken links "
-        "or joints, opening and slip of cracks: docs/measures.md");
+        "what is read from each element; force is all that acts on it but gravity, so that of a "
+        "support leaves out the weight of what it holds itself; stress, strain and displacement of "
+        "a region, broken links or joints, opening and slip of cracks: docs/measures.md");
     key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");
     key("min", min, "m", any_number,
         "lower corner of a box that stands still: what is inside at the time is read (of "

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/nearest_name.hpp"
+
 namespace breccia {
 
 /// The item of that name, or null.
@@ -29,7 +31,7 @@ inline void add_unknown(const std::string& key, const std::string& name, const s
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
   problems.push_back(key + " = \"" + name + "\" is no " + kind +
-                     "; there are: " + (all.empty() ? "none" : all));
+                     "; there are: " + (all.empty() ? "none" : all) + meant_name(name, known));
 }
 
 }  // namespace breccia

@@ -82,8 +82,8 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
       else if (!std::isfinite(rule->limit))
         problems.push_back(where + ".when = \"" + s.when + "\": no probe reads more or less");
       else if (!is_probe(rule->probe))
-        problems.push_back(where + ".when: \"" + rule->probe +
-                           "\" is not a probe; there are: " + list_of(probes));
+        problems.push_back(where + ".when: \"" + rule->probe + "\" is not a probe; there are: " +
+                           list_of(probes) + meant_name(rule->probe, probes));
       else if (!rule->unit.empty())
         problems.push_back(where + ".when = \"" + s.when + "\": " + rule->unit + " is no unit");
     }
@@ -105,7 +105,8 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
       problems.push_back(where + ".remove takes out all that is left; a body must stay");
     if (s.drop > 0.0 && !is_probe(s.drop_of))
       problems.push_back(where + ".drop_of = \"" + s.drop_of +
-                         "\" is not a probe, which drop needs; " + "there are: " + list_of(probes));
+                         "\" is not a probe, which drop needs; there are: " + list_of(probes) +
+                         meant_name(s.drop_of, probes));
     if (s.drop == 0.0 && !s.drop_of.empty())
       problems.push_back(where + ".drop_of says which probe drop looks at, and there is no drop");
   }

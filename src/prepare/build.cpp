@@ -56,7 +56,7 @@ class Assembly {
       body_ = &body;
       group_ = static_cast<std::int16_t>(i);
       material_ = static_cast<std::int16_t>(find_named(config.materials, body.material));
-      BodyLinks links{.material = material_};
+      BodyLinks links{.material = material_, .of_file = body.shape == "file"};
       if (body.shape == "rebar") {
         links = add_bars();
       } else if (body.shape == "element") {

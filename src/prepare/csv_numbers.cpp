@@ -81,8 +81,11 @@ void read_csv(const std::string& path, std::size_t count, const std::string& wan
     if (names) continue;
     const auto values = numbers(text);
     if (!values || values->size() != count || !take(*values))
-      throw InputError(fmt::format("{}, line {}{} is not {}", path, line,
-                                   is_ours ? ": " + in_quotes(text) : "", wanted));
+      throw InputError(fmt::format(
+          "{}, line {}{} is not {}{}", path, line, is_ours ? ": " + in_quotes(text) : "", wanted,
+          text.find(';') != std::string::npos
+              ? "; it has semicolons: write commas between numbers, and points in them"
+              : ""));
     is_ours = true;
   }
 }

@@ -193,7 +193,9 @@ TEST(DugLoads, that_catch_nothing_are_problems) {
   fdem::Config config = plate("none").config;
   config.loads[1].dug_by = "excavat";
   EXPECT_TRUE(
-      tells(config, "load.wall.dug_by = \"excavat\" is no stage; there are: stand, excavate"));
+      tells(config,
+            "load.wall.dug_by = \"excavat\" is no stage; there are: stand, excavate; did you mean "
+            "excavate?"));
   config.loads[1].dug_by = "stand";
   EXPECT_TRUE(tells(config,
                     "load.wall.dug_by = \"stand\": that stage takes no body out, and lays "

@@ -239,7 +239,8 @@ TEST(Removal, of_bodies_that_are_not_there_or_are_gone_is_a_problem) {
   config.stages = {zero, first, second};
   const std::vector<std::string> said = fdem::stage_problems(config);
   ASSERT_EQ(said.size(), 2U);
-  EXPECT_EQ(said[0], "stage.a.remove = \"cor\" is no body; there are: core, rest");
+  EXPECT_EQ(said[0],
+            "stage.a.remove = \"cor\" is no body; there are: core, rest; did you mean core?");
   EXPECT_EQ(said[1], "stage.b.remove: \"core\" has been taken out before");
   config.stages = {zero, second};
   config.stages = {first};

@@ -76,20 +76,23 @@ class PairChecks {
   }
   void check(const ProbeConfig& p) {
     if (is_of_spheres(config_, p.on) || is_of_tetrahedra(config_, p.on)) return;
+    const std::vector<std::string> names = all_names();
     add(fmt::format(
         "probe.{}.on = {:?}: name a body, a support, a wall or a bolt, or \"{}\" or \"{}\" for "
-        "all of them; there are: {}",
-        p.name, p.on, all_spheres, all_tetrahedra, all_names()));
+        "all of them; there are: {}{}",
+        p.name, p.on, all_spheres, all_tetrahedra,
+        names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")),
+        meant_name(p.on, names)));
   }
-  std::string all_names() const {
-    std::string text;
+  std::vector<std::string> all_names() const {
+    std::vector<std::string> names;
     const auto list = [&](const auto& items) {
-      for (const auto& item : items) text += (text.empty() ? "" : ", ") + item.name;
+      for (const auto& item : items) names.push_back(item.name);
     };
     list(config_.spheres.bodies), list(config_.spheres.supports), list(config_.spheres.walls);
     list(config_.tetrahedra.bodies), list(config_.tetrahedra.supports);
     list(config_.tetrahedra.bolts);
-    return text.empty() ? "none" : text;
+    return names;
   }
   void check(const BondConfig& b) {
     const auto look = [&](const char* key, const std::string& name, const auto& bodies) {

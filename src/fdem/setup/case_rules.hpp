@@ -110,7 +110,8 @@ class CaseRules {
   void check_body(const std::string& where, const std::string& on) {
     const std::vector<std::string> bodies = breccia::names_of(config_.bodies);
     if (!on.empty() && std::find(bodies.begin(), bodies.end(), on) == bodies.end())
-      add(where + ".on = \"" + on + "\" is not a body; there are: " + listed_names(config_.bodies));
+      add(where + ".on = \"" + on + "\" is not a body; there are: " + listed_names(config_.bodies) +
+          meant_name(on, bodies));
   }
 
   template <class Region>
@@ -154,7 +155,8 @@ class CaseRules {
                                     [&](const auto& each) { return each.name == load.dug_by; });
     if (stage == config_.stages.end())
       add(where + " = \"" + load.dug_by +
-          "\" is no stage; there are: " + listed_names(config_.stages));
+          "\" is no stage; there are: " + listed_names(config_.stages) +
+          meant_name(load.dug_by, breccia::names_of(config_.stages)));
     else if (stage->remove.empty())
       add(where + " = \"" + load.dug_by +
           "\": that stage takes no body out, and lays nothing bare");
@@ -173,7 +175,7 @@ class CaseRules {
       if (!p.on.empty() && places_.count(p.on) == 0)
         add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
             listed_names(config_.bodies) + ") nor a support (" + listed_names(config_.supports) +
-            ")" + bolts);
+            ")" + bolts + meant_name(p.on, {places_.begin(), places_.end()}));
   }
 
   static std::string words_of(const std::vector<std::string>& words) {

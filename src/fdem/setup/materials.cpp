@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/named.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/bedding.hpp"
 #include "fdem_shared/setup/elements.hpp"
@@ -55,10 +56,9 @@ std::int16_t material_index(const Config& config, const std::string& name,
                             const std::string& where) {
   for (std::size_t i = 0; i < config.materials.size(); ++i)
     if (config.materials[i].name == name) return static_cast<std::int16_t>(i);
-  std::string known;
-  for (const MaterialConfig& m : config.materials) known += (known.empty() ? "" : ", ") + m.name;
-  throw InputError(where + ": there is no material \"" + name + "\"; there is " +
-                   (known.empty() ? "none" : known));
+  std::vector<std::string> problem;
+  add_unknown(where, name, "material", breccia::names_of(config.materials), problem);
+  throw InputError(problem.front());
 }
 
 BondTable bond_table(const Config& config) {
@@ -146,12 +146,12 @@ std::vector<ContactPair> contact_table(const Config& config) {
                           std::min(pa * a.tangential_stiffness, pb * b.tangential_stiffness),
                           std::min(a.friction, b.friction)};
     }
-  for (const FrictionConfig& f : config.frictions) {
-    if (f.between.size() != 2) throw InputError("friction.between: takes two materials");
-    const auto a =
-        static_cast<std::size_t>(material_index(config, f.between[0], "friction.between"));
-    const auto b =
-        static_cast<std::size_t>(material_index(config, f.between[1], "friction.between"));
+  for (std::size_t k = 0; k < config.frictions.size(); ++k) {
+    const FrictionConfig& f = config.frictions[k];
+    const std::string where = "friction[" + std::to_string(k + 1) + "].between";
+    if (f.between.size() != 2) throw InputError(where + ": takes two materials");
+    const auto a = static_cast<std::size_t>(material_index(config, f.between[0], where));
+    const auto b = static_cast<std::size_t>(material_index(config, f.between[1], where));
     pairs[a * n + b].friction = pairs[b * n + a].friction = f.coefficient;
   }
   return pairs;

@@ -1,27 +1,14 @@
 #include "io/case/suggestion.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <string_view>
 #include <utility>
-#include <vector>
+
+#include "core/nearest_name.hpp"
 
 namespace breccia {
 namespace {
-
-/// Letters to add, drop, change or swap to make one word of the other.
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i)
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      d[i][j] =
-          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
 
 /// Words of other programs, and of papers, for keys of cases.
 constexpr std::pair<std::string_view, std::string_view> other_words[] = {
@@ -30,6 +17,16 @@ constexpr std::pair<std::string_view, std::string_view> other_words[] = {
     {"nu", "poisson"},   {"rho", "density"},         {"mu", "friction"},
     {"ft", "tension"},   {"ft", "tensile_strength"}, {"element_size", "mesh_size"},
     {"dip", "angle"},    {"dip_angle", "angle"},     {"yield_force", "yield"}};
+
+/// Keys of cases of spheres and tetrahedra that neither has of its own, and how they are given.
+constexpr std::pair<std::string_view, std::string_view> above_both[] = {
+    {"probe", "[[probe]], and reads what its `on` names"},
+    {"check", "[[check]]"},
+    {"output", "[output]"},
+    {"time", "[time]"},
+    {"checkpoint", "[checkpoint]"},
+    {"gravity", "gravity = [...]"},
+    {"seed", "seed = ..."}};
 
 /// Words for the strength of a specimen, which is no key of a link or a joint.
 bool is_compressive_strength(const std::string& word) {
@@ -58,7 +55,7 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
   std::string best;
   std::size_t least = 3 + word.size() / 4;
   for (const std::string& candidate : known)
-    if (const std::size_t d = distance(word, candidate); d < least) {
+    if (const std::size_t d = slips_between(word, candidate); d < least) {
       least = d;
       best = candidate;
     }
@@ -71,6 +68,9 @@ std::string suggestion(const std::string& word, const std::set<std::string>& kno
   if (word == "stage" && known.contains("body"))  // below spheres or tetrahedra
     return ": stages stand above both methods: [[stage]], with [stage.spheres] and "
            "[stage.tetrahedra]";
+  for (const auto& [above, head] : above_both)
+    if (word == above && known.contains("body"))
+      return fmt::format(": it stands above both methods, {}", head);
   if (is_compressive_strength(word) && known.contains("cohesion"))
     return known.contains("friction_angle")
                ? ": a strength of specimens; of joints give cohesion, UCS (1 - sin a)/(2 cos a) by "

@@ -381,7 +381,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
   const std::optional<Selected> selected = find(frame, field, lines_first);
   if (!selected) {
     throw InputError(fmt::format(
-        "field = \"{}\" is not in this frame; it has {}{}", field, names_of_fields(frame),
+        "there is no field \"{}\" in this frame; it has {}{}", field, names_of_fields(frame),
         is_stress_measure(field) ? "; output.more = [\"stress\"] in the case adds stresses" : ""));
   }
   coloring.legend = {};

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/most_names.hpp"
+#include "core/named.hpp"
 #include "core/probe.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
@@ -175,7 +176,7 @@ class Check {
                       s.name));
     if (!s.on.empty() && prepare::item_named(config_.bodies, s.on) == nullptr)
       add(fmt::format("support.{}.on = {:?} is not a body; there are: {}", s.name, s.on,
-                      prepare::all_names(config_.bodies)));
+                      prepare::all_names(config_.bodies, s.on)));
     check_fix("support." + s.name, s.fix);
     if (s.absorbs() && !(s.area > 0.0))
       add("support." + s.name + ".area: an absorbing face needs it");
@@ -202,9 +203,14 @@ class Check {
       return;
     }
     if (prepare::item_named(config_.walls, p.on) != nullptr) return check_wall_probe(p);
-    add(fmt::format("probe.{}.on = {:?} is neither a body ({}) nor a support ({}) nor a wall ({})",
-                    p.name, p.on, prepare::all_names(config_.bodies),
-                    prepare::all_names(config_.supports), prepare::all_names(config_.walls)));
+    std::vector<std::string> known = breccia::names_of(config_.bodies);
+    for (const std::vector<std::string>& more :
+         {breccia::names_of(config_.supports), breccia::names_of(config_.walls)})
+      known.insert(known.end(), more.begin(), more.end());
+    add(fmt::format(
+        "probe.{}.on = {:?} is neither a body ({}) nor a support ({}) nor a wall ({}){}", p.name,
+        p.on, prepare::all_names(config_.bodies), prepare::all_names(config_.supports),
+        prepare::all_names(config_.walls), meant_name(p.on, known)));
   }
 
   void check_wall_probe(const ProbeConfig& p) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "core/most_names.hpp"
@@ -60,6 +61,14 @@ double gap(const BodyConfig& a, const BodyConfig& b) {
 }
 /// Bodies of more elements are tested when they are packed.
 constexpr int most_tested = 100'000;
+
+/// The items of which something holds.
+template <class Item, class Holds>
+std::vector<Item> those_of(const std::vector<Item>& items, const Holds& holds) {
+  std::vector<Item> those;
+  std::copy_if(items.begin(), items.end(), std::back_inserter(those), holds);
+  return those;
+}
 
 double extent(const BodyConfig& b) {
   return norm(b.size) + b.radius + b.length + norm(b.center);
@@ -123,7 +132,7 @@ class DemBodyChecks {
     require(is_packed(b) || b.shape == "file",
             ".grains: packings and spheres of a file have grains, not shape {}", b.shape);
     require(between != nullptr, ".grains.boundary = \"{}\" is no material; there are: {}",
-            g.boundary, prepare::all_names(config_.materials));
+            g.boundary, prepare::all_names(config_.materials, g.boundary));
     if (of == nullptr || between == nullptr) return;
     require(of->law == "concrete" || of->law == "parallel",
             ".grains: links of law concrete and parallel have boundaries, not law {}", of->law);
@@ -227,7 +236,7 @@ class DemBodyChecks {
   void check_material(const BodyConfig& b) {
     const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
     require(material != nullptr, ".material = {:?} is not a material; there are: {}", b.material,
-            prepare::all_names(config_.materials));
+            prepare::all_names(config_.materials, b.material));
     if (material == nullptr) return;
     require(material->fracture_energy == 0.0 || material->tensile_strength > 0.0,
             ": fracture_energy of {} needs a tensile_strength above 0", b.material);
@@ -244,13 +253,19 @@ class DemBodyChecks {
     require(norm(b.velocity) == 0.0 && norm(b.spin) == 0.0,
             ": bars move with the body they reinforce; give velocity and spin there");
     const MaterialConfig* bond = prepare::item_named(config_.materials, b.rebar.interface_law);
-    require(bond != nullptr && bond->law == "interface",
-            ".rebar.interface = {:?} is not a material of law interface; there are: {}",
-            b.rebar.interface_law, prepare::all_names(config_.materials));
+    require(
+        bond != nullptr && bond->law == "interface",
+        ".rebar.interface = {:?} is not a material of law interface; there are: {}",
+        b.rebar.interface_law,
+        prepare::all_names(those_of(config_.materials,
+                                    [](const MaterialConfig& m) { return m.law == "interface"; }),
+                           b.rebar.interface_law));
     const BodyConfig* host = prepare::item_named(config_.bodies, b.rebar.in);
     const bool drawn = !b.rebar.drawn.empty();
     require(host != nullptr, ".rebar.in = {:?} is not a body; there are: {}", b.rebar.in,
-            prepare::all_names(config_.bodies));
+            prepare::all_names(
+                those_of(config_.bodies, [](const BodyConfig& o) { return o.shape != "rebar"; }),
+                b.rebar.in));
     if (host == nullptr) return;
     const bool fits =
         host->shape == "box" ||

@@ -107,7 +107,7 @@ class TetBodyChecks {
   void require_material(const std::string& key, const std::string& name) {
     require(item_named(config_.materials, name) != nullptr,
             "{} = \"{}\" is not a material; there are: {}", key, name,
-            all_names(config_.materials));
+            all_names(config_.materials, name));
   }
 
   void check_part(const TetBodyConfig& b) {
@@ -188,7 +188,7 @@ class TetBodyChecks {
             "grains.boundary is between Voronoi grains; kind is {}", g.kind);
     require(g.boundary.empty() || item_named(config_.joint_laws, g.boundary) != nullptr,
             "grains.boundary = \"{}\" is not a joint law; there are: {}", g.boundary,
-            all_names(config_.joint_laws));
+            all_names(config_.joint_laws, g.boundary));
     require(!g.minerals.empty(), "grains need at least one [[body.grains.mineral]]");
     require(g.kind != "voronoi" || g.size > 0.0, "grains.size must be above 0 for Voronoi grains");
     double sum = 0.0;
@@ -213,7 +213,7 @@ class TetBodyChecks {
     if (d.kind == "cohesive")
       require(item_named(config_.joint_laws, d.material) != nullptr,
               "material = \"{}\" is not a joint law; there are: {}", d.material,
-              all_names(config_.joint_laws));
+              all_names(config_.joint_laws, d.material));
   }
 
   void check_flat(const std::vector<Vec3>& points) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/most_names.hpp"
+#include "core/nearest_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/meshing/holes.hpp"
 
@@ -17,8 +18,10 @@ using fdem::DiscontinuityConfig;
 constexpr double most_triangles = 2e8;
 constexpr double least_width = 1e-4;  ///< of a body, over mesh_size: nobody meshes thinner ones [-]
 
-std::string list_of(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+/// All names, and the one that a name which is none of them may have meant.
+std::string list_of(const std::vector<std::string>& names, const std::string& unknown) {
+  return (names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))) +
+         meant_name(unknown, names);
 }
 
 bool is_plain(const BodyConfig& b) {
@@ -68,7 +71,7 @@ class BodyChecks {
   void require_material(const char* key, const std::string& name) {
     const auto& all = names_.materials;
     require(std::find(all.begin(), all.end(), name) != all.end(),
-            "{} = \"{}\" is not a material; there are: {}", key, name, list_of(all));
+            "{} = \"{}\" is not a material; there are: {}", key, name, list_of(all, name));
   }
 
   void check(const BodyConfig& b) {
@@ -173,7 +176,8 @@ class BodyChecks {
             "grains.boundary is between Voronoi grains; kind is {}", g.kind);
     require(
         g.boundary.empty() || std::find(joints.begin(), joints.end(), g.boundary) != joints.end(),
-        "grains.boundary = \"{}\" is not a joint law; there are: {}", g.boundary, list_of(joints));
+        "grains.boundary = \"{}\" is not a joint law; there are: {}", g.boundary,
+        list_of(joints, g.boundary));
     const bool picture = g.kind == "picture";
     require(!picture || g.file.ends_with(".png"), "grains.file must name a .png file; it is \"{}\"",
             g.file);
@@ -203,7 +207,8 @@ class BodyChecks {
     const auto& joints = names_.joints;
     if (d.kind == "cohesive")
       require(std::find(joints.begin(), joints.end(), d.material) != joints.end(),
-              "material = \"{}\" is not a joint law; there are: {}", d.material, list_of(joints));
+              "material = \"{}\" is not a joint law; there are: {}", d.material,
+              list_of(joints, d.material));
   }
 
   const FdemNames& names_;

@@ -15,68 +15,16 @@
 #include "fdem_shared/setup/bolts.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
-#include "prepare/checks/outlines.hpp"
+#include "prepare/checks/cracks_beside.hpp"
+#include "prepare/checks/nearest_body.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/joint_sets.hpp"
 #include "prepare/shapes/solid.hpp"
 #include "prepare/shapes/wall_files.hpp"
-#include "prepare/tetrahedra/joint_discs.hpp"
 
 namespace breccia::prepare {
 namespace {
-
-/// Along the axis along which they are furthest apart; 0 if they meet.  [m]
-std::pair<double, std::size_t> gap(const Bounds& a, const Bounds& b) {
-  std::pair<double, std::size_t> most{0.0, 0};
-  for (std::size_t k = 0; k < 3; ++k)
-    most = std::max(most, {std::max(a.low[k] - b.high[k], b.low[k] - a.high[k]), k});
-  return most;
-}
-
-std::string place(double x) {
-  return x < 0.0 ? "-" + length_text(-x) : x > 0.0 ? length_text(x) : "0 m";
-}
-
-/// The body nearest to a region, how far it is away, and along which axis.
-struct Nearest {
-  const Outline* body = nullptr;  ///< none: the region may take something, or no outline is known
-  double away = 0.0;              ///<  [m]
-  std::size_t axis = 0;
-};
-Nearest nearest_to(const Bounds& region, const std::string& on,
-                   const std::vector<Outline>& outlines) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if (region.low[k] > region.high[k]) return {};  // check_case tells
-  const Outline* nearest = nullptr;
-  std::pair<double, std::size_t> least{0.0, 0};
-  for (const Outline& outline : outlines) {
-    if (!on.empty() && outline.name != on) continue;
-    if (outline.in_another && on.empty()) continue;
-    if (!outline.bounds) return {};
-    const auto apart = gap(region, *outline.bounds);
-    if (apart.first <= 1e-9) return {};
-    if (nearest == nullptr || apart < least) {
-      least = apart;
-      nearest = &outline;
-    }
-  }
-  return {nearest, least.first, least.second};
-}
-
-/// The problem of a region; empty: it may take something, or no outline is known.
-std::string problem_of(const std::string& key, const Bounds& region, const std::string& on,
-                       const std::vector<Outline>& outlines) {
-  const auto [nearest, away, axis] = nearest_to(region, on, outlines);
-  if (nearest == nullptr) return "";
-  constexpr std::array<char, 3> axes{'x', 'y', 'z'};
-  const bool below = region.high[axis] < nearest->bounds->low[axis];
-  return fmt::format(
-      "{}.{} = {}: the region takes nothing; {} is nearest, {} away, with {} from {} to {}", key,
-      below ? "max" : "min", place(below ? region.high[axis] : region.low[axis]), nearest->name,
-      length_text(away), axes[axis], place(nearest->bounds->low[axis]),
-      place(nearest->bounds->high[axis]));
-}
 
 Vec3 nearest_in(const Bounds& b, const Vec3& x) {
   return {std::clamp(x.x, b.low[0], b.high[0]), std::clamp(x.y, b.low[1], b.high[1]),
@@ -94,13 +42,6 @@ double height_above(const dem::Wall& wall, const Bounds& b) {
     x = nearest_in(b, x - height * at.normal);
   }
   return height;
-}
-
-void add_to(Bounds& b, const std::array<double, 3>& at) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    b.low[k] = std::min(b.low[k], at[k]);
-    b.high[k] = std::max(b.high[k], at[k]);
-  }
 }
 
 /// The box around a wall of triangles.
@@ -180,48 +121,6 @@ std::string problem_of_point(const std::string& key, const Vector& point,
                      place(x.y), z, nearest->name, length_text(least));
 }
 
-/// The problem of a set of joints that meets no body; empty: it may meet one, or its file is bad.
-std::string problem_of_set(const fdem::JointSetConfig& set, const std::string* folder,
-                           const std::vector<Outline>& outlines) {
-  const std::string key = "joint_set." + set.name;
-  if (set.file.empty())
-    return problem_of(key, {{set.min.x, set.min.y, 0.0}, {set.max.x, set.max.y, 0.0}}, "",
-                      outlines);
-  if (folder == nullptr) return "";
-  Bounds all{{no_limit, no_limit, 0.0}, {-no_limit, -no_limit, 0.0}};
-  try {
-    for (const fdem::DiscontinuityConfig& line : lines_of_set(set, 0, 0, *folder))
-      for (const Vec2& x : line.points) add_to(all, {x.x, x.y, 0.0});
-  } catch (const Error&) {
-    return "";  // check_files tells
-  }
-  const Nearest nearest = nearest_to(all, "", outlines);
-  if (nearest.body == nullptr) return "";
-  return fmt::format("{}.file: its lines lie in no body; {} is nearest, {} away", key,
-                     nearest.body->name, length_text(nearest.away));
-}
-
-std::string problem_of_set(const fdem3::JointSetConfig& set, const std::string* folder,
-                           const std::vector<Outline>& outlines) {
-  const std::string key = "joint_set." + set.name;
-  if (set.file.empty())
-    return problem_of(key, {{set.min.x, set.min.y, set.min.z}, {set.max.x, set.max.y, set.max.z}},
-                      "", outlines);
-  if (folder == nullptr) return "";
-  Bounds all{{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}};
-  try {
-    CrackNetwork any(0.0);
-    for (const fdem3::DiscontinuityConfig& polygon : polygons_of_set(set, 0, 0, *folder, any))
-      for (const Vec3& x : polygon.points) add_to(all, {x.x, x.y, x.z});
-  } catch (const Error&) {
-    return "";  // check_files tells
-  }
-  const Nearest nearest = nearest_to(all, "", outlines);
-  if (nearest.body == nullptr) return "";
-  return fmt::format("{}.file: its polygons lie in no body; {} is nearest, {} away", key,
-                     nearest.body->name, length_text(nearest.away));
-}
-
 /// Cuts that lie beside the body that they are of.
 void add_idle_cuts(const dem::BodyConfig& body, std::vector<std::string>& problems) {
   if (body.cuts.empty() || body.shape == "stl" || !(norm(body.axis) > 0.0)) return;
@@ -274,9 +173,10 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
       problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
       if (bolt.is_ring() && !problems.back().empty()) break;
     }
-  if constexpr (requires { config.joint_sets; })
-    for (const auto& set : config.joint_sets)
-      problems.push_back(problem_of_set(set, folder, outlines));
+  for (const auto& d : config.discontinuities)
+    problems.push_back(problem_of_discontinuity(d, outlines));
+  for (const auto& set : config.joint_sets)
+    problems.push_back(problem_of_set(set, folder, outlines));
   std::erase(problems, "");
   refuse(problems, "in the case");
 }
@@ -396,6 +296,23 @@ std::vector<std::string> empty_boxes(const Config& config, const std::vector<Out
   return doubts;
 }
 
+/// Boxes that are empty, and openings of a case without joints.
+template <class Config>
+std::vector<std::string> doubtful_probes_of_mesh(const Config& config, const std::string& folder) {
+  std::vector<std::string> doubts = empty_boxes(config, outlines_of(config, &folder));
+  const bool joined = !config.joint_laws.empty() ||
+                      std::any_of(config.materials.begin(), config.materials.end(),
+                                  [](const fdem::MaterialConfig& m) { return m.joints != "none"; });
+  for (const ProbeConfig& p : config.probes)
+    if (!joined && (p.quantity == "opening" || p.quantity == "slip"))
+      doubts.push_back(fmt::format(
+          "probe.{}.quantity = \"{}\" is of joints, and nothing in this case has any: it reads 0. "
+          "How far an open discontinuity gapes is the difference of displacement of two boxes, one "
+          "on each side",
+          p.name, p.quantity));
+  return doubts;
+}
+
 /// Whether a region holds a piece as long as an edge of the mesh, each way, on a side of a body;
 /// true of one that reaches none of its outermost sides.
 bool holds_an_edge(const Bounds& region, const Bounds& body, double edge, std::size_t dimension) {
@@ -450,10 +367,10 @@ std::vector<std::string> doubtful_probes(const dem::Config& config, const std::s
   return empty_boxes(config, outlines_of(config, &folder, true));
 }
 std::vector<std::string> doubtful_probes(const fdem::Config& config, const std::string& folder) {
-  return empty_boxes(config, outlines_of(config, &folder));
+  return doubtful_probes_of_mesh(config, folder);
 }
 std::vector<std::string> doubtful_probes(const fdem3::Config& config, const std::string& folder) {
-  return empty_boxes(config, outlines_of(config, &folder));
+  return doubtful_probes_of_mesh(config, folder);
 }
 
 std::vector<std::string> doubtful_loads(const fdem::Config& config, const std::string& folder) {

@@ -148,9 +148,19 @@ std::string merged_lines(const BodyConfig& body, const MeshingContext& context) 
   const double tolerance = body.merge * body.mesh_size;
   const Region region = region_of(body, context);
   const std::vector<Line> made = cleaned(region.lines, straight_rim(region), tolerance);
-  std::size_t moved = 0;
-  double farthest = 0.0;
-  for (const Line& line : region.lines)
+  const auto is_gone = [&](const Vec2& place) {
+    return std::none_of(made.begin(), made.end(),
+                        [&](const Line& line) { return distance(place, line) < tolerance; });
+  };
+  std::size_t moved = 0, short_lines = 0;
+  double farthest = 0.0, left_out = 0.0;
+  for (const Line& line : region.lines) {
+    const double length = norm(line[1] - line[0]);
+    if (length < tolerance && is_gone(0.5 * (line[0] + line[1]))) {
+      ++short_lines;  // both its ends became one point
+      left_out += length;
+      continue;
+    }
     for (const Vec2& end : line) {
       double nearest = 1e300;
       for (const Line& other : made)
@@ -159,13 +169,17 @@ std::string merged_lines(const BodyConfig& body, const MeshingContext& context) 
       ++moved;
       farthest = std::max(farthest, nearest);
     }
-  return moved == 0 ? ""
-                    : fmt::format(
-                          "merge moves {} of {} ends of the {} lines that its mesh follows, by "
-                          "{:.3g} m at most, since they lie nearer than {:.3g} m to others or to "
-                          "its outline; {} parts are left",
-                          moved, 2 * region.lines.size(), region.lines.size(), farthest, tolerance,
-                          made.size());
+  }
+  if (moved == 0 && short_lines == 0) return "";
+  return fmt::format(
+      "merge moves {} of {} ends of the {} lines that its mesh follows, by {:.3g} m at most, since "
+      "they lie nearer than {:.3g} m to others or to its outline{}; {} parts are left",
+      moved, 2 * region.lines.size(), region.lines.size(), farthest, tolerance,
+      short_lines == 0
+          ? ""
+          : fmt::format(", and leaves out {} line{} shorter than that, {:.3g} m in all",
+                        short_lines, short_lines == 1 ? "" : "s", left_out),
+      made.size());
 }
 
 bool needs_gmsh(const BodyConfig& body) {

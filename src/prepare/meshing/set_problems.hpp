@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/nearest_name.hpp"
+
 namespace breccia::prepare {
 
 /// Problems of the keys that sets in the plane and in space share. @returns whether it comes from a
@@ -20,7 +22,8 @@ bool check_shared_keys(const Set& set, const std::vector<std::string>& joints, c
   require(set.kind != "cohesive" ||
               std::find(joints.begin(), joints.end(), set.material) != joints.end(),
           fmt::format(".material = \"{}\" is not a joint law; there are: {}", set.material,
-                      joints.empty() ? "none" : fmt::format("{}", fmt::join(joints, ", "))));
+                      joints.empty() ? "none" : fmt::format("{}", fmt::join(joints, ", "))) +
+              meant_name(set.material, joints));
   if (set.file.empty()) return false;
   require(set.file.ends_with(".csv") || set.file.ends_with(".wkt"),
           fmt::format(".file = \"{}\" is neither a .csv nor a .wkt file", set.file));

@@ -251,13 +251,17 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
     };
     const Vec3& at = m.position[static_cast<std::size_t>(pair.a)];
     // Grains of one body push each other apart from the start, as dense as they are packed.
+    const char* const advice =
+        groups.first != groups.second ? ""
+        : bodies[static_cast<std::size_t>(groups.first)].of_file
+            ? "; spheres of its file lie in each other, which only links of law concrete or "
+              "parallel take: smaller radii there"
+            : "; loose grains need a smaller pack.compactness, such as 0.5";
     problems.push_back(fmt::format(
-        "element {} of body {} overlaps element {} of body {} by {:.3g} m at ({:.4g}, {:.4g}, "
-        "{:.4g}) m; {} such pairs{}",
-        pair.a, name(pair.a), pair.b, name(pair.b), pair.depth, at.x, at.y, at.z, pair.pairs,
-        groups.first == groups.second
-            ? "; loose grains need a smaller pack.compactness, such as 0.5"
-            : ""));
+        "body.{}: element {} of body {} overlaps element {} of body {} by {:.3g} m at ({:.4g}, "
+        "{:.4g}, {:.4g}) m; {} such pairs{}",
+        name(pair.a), pair.a, name(pair.a), pair.b, name(pair.b), pair.depth, at.x, at.y, at.z,
+        pair.pairs, advice));
   }
   return problems;
 }

@@ -22,6 +22,7 @@ struct BodyLinks {
   std::int16_t material = 0;                     ///< of the links within the body
   int host = -1;                                 ///< body that the bars reinforce
   std::int16_t interface = 0;                    ///< material of the links between bars and host
+  bool of_file = false;                          ///< its elements are read, not packed
 };
 
 /// The least number of interface links an element of a bar has, if its host has that many elements.

@@ -129,19 +129,43 @@ double least_radius(const dem::Model& model) {
 constexpr double packing_of_one = 0.15e-3;  // element  [s]
 constexpr double bytes_of_read = 2400.0;    // element of a file, which memory_plan does not open
 
-/// Adds what a specimen of one packed body tells.
-double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
-  constexpr double least_elements = 20.0;
-  f.items += p.count;
-  if (p.count < least_elements) return 0.0;  // too few for a specimen
+constexpr double least_elements = 20.0;  // of a specimen that stands for a body
+
+/// Materials and rules of a case, with these bodies alone.
+dem::Config specimen_of(const dem::Config& config, std::vector<dem::BodyConfig> bodies) {
   dem::Config specimen = config;
-  specimen.bodies = {cut(p)};
+  specimen.bodies = std::move(bodies);
   for (dem::MaterialConfig& m : specimen.materials)
     m.fracture_energy = 0.0;  // its step is the same
   specimen.walls.clear();
   specimen.supports.clear();
   specimen.probes.clear();
   specimen.checks.clear();
+  return specimen;
+}
+
+/// Adds what single elements and bodies of few tell: they are their own specimen.
+double add_few(Forecast& f, const dem::Config& config, const std::vector<dem::BodyConfig>& bodies,
+               const std::string& folder) {
+  if (bodies.empty()) return 0.0;
+  dem::Config specimen = specimen_of(config, bodies);
+  specimen.links.count = 0;
+  const dem::Model model = build_model(specimen, folder);
+  const auto count = static_cast<double>(model.size());
+  const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
+  take_step(f, method->time_step(),
+            fmt::format("{} of {}{}: elements of radius {}",
+                        model.links.empty() ? "contacts" : "links", bodies.front().name,
+                        bodies.size() > 1 ? " and others" : "", length_text(least_radius(model))));
+  f.items += count;
+  f.bonds += static_cast<double>(model.links.size());
+  return pace_of(*method, count) * count;
+}
+
+/// Adds what a specimen of one packed body tells.
+double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
+  f.items += p.count;
+  dem::Config specimen = specimen_of(config, {cut(p)});
   if (config.links.count > 0) {
     double all = 0.0;
     for (const dem::BodyConfig& body : config.bodies)
@@ -289,16 +313,23 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
   Forecast f;
   double pace = 0.0;  // of all items, each step  [s]
   double facets = 0.0;
+  std::vector<dem::BodyConfig> few;
   for (const dem::BodyConfig& body : config.bodies) {
     const double bonds = f.bonds;
-    if (body.shape == "rebar")
+    if (body.shape == "rebar") {
       add_bars(f, config, body);
-    else if (body.shape == "element")
-      f.items += 1.0;
-    else
-      pace += add_body(f, config, packed(config, prepare::whole_of(body, folder), folder));
+    } else if (body.shape == "element") {
+      few.push_back(body);
+    } else {
+      const Packed p = packed(config, prepare::whole_of(body, folder), folder);
+      if (p.count < least_elements)
+        few.push_back(body);
+      else
+        pace += add_body(f, config, p);
+    }
     if (is_ldpm(config, body)) facets += f.bonds - bonds;
   }
+  pace += add_few(f, config, few, folder);
   finish(f, config.time, end_of(config.stages, config.time.end));
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
   if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);

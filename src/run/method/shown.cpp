@@ -147,19 +147,42 @@ std::vector<std::string> problems_of_pictures(const OutputConfig& output, const 
   return problems;
 }
 
-void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
+/// Fields that frames of a case have and its specimen's have not: of supports, bars and facets.
+template <class Config>
+std::set<std::string> more_fields(const Config& config) {
+  std::set<std::string> more;
+  const auto add = [&](const auto& part) {
+    if (!part.supports.empty()) more.insert("held");
+    for (const auto& body : part.bodies)
+      if (body.shape == "rebar") more.insert("bar");
+    if constexpr (requires { part.materials.front().law; })
+      for (const auto& material : part.materials)
+        if (material.law == "ldpm") more.insert({"opening", "slip"});
+  };
+  if constexpr (requires { config.spheres; })
+    add(config.spheres), add(config.tetrahedra);
+  else
+    add(config);
+  return more;
+}
+
+/// @param more  fields of the case's frames besides the specimen's
+void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen,
+                              const std::set<std::string>& more) {
   const Shown shown = shown_by(specimen);
+  std::set<std::string> fields = field_names(shown.frame);
+  fields.insert(more.begin(), more.end());
   std::vector<std::string> problems;
   for (const CheckConfig& check : config.checks)
     problems.push_back(problem_of(check, config.probes, shown, config.time.end));
   for (const std::string& curve : config.output.curves)
     problems.push_back(problem_of_curve(curve, config.probes));
-  if (!has_field(shown.frame, config.output.color))
+  if (!has_field(shown.frame, config.output.color) && !more.contains(config.output.color))
     problems.push_back(fmt::format(
         "output.color = {:?} is no field of the frames{}; allowed are {}, and \"\" for "
         "none",
         config.output.color, config.output.color == "speed" ? ", it is called velocity there" : "",
-        fmt::join(field_names(shown.frame), ", ")));
+        fmt::join(fields, ", ")));
   for (std::string& problem : problems_of_pictures(config.output, shown.frame))
     problems.push_back(std::move(problem));
   std::erase(problems, "");
@@ -251,7 +274,7 @@ void part_outlet(fdem3::LoadConfig& load, fdem3::RegionConfig& outlet) {
 void check_shown(const dem::Config& config) {
   auto one = case_of_specimen<dem::Config>(config);
   one.materials.emplace_back();
-  refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}));
+  refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}), more_fields(config));
 }
 
 void check_shown(const coupled::Config& config) {
@@ -262,7 +285,7 @@ void check_shown(const coupled::Config& config) {
   add_bolts(config.tetrahedra, one.tetrahedra, put_in_space);
   coupled::Model model{specimen_of(config.spheres), specimen_of(config.tetrahedra)};
   for (Vec3& place : model.spheres.position) place.y = 100.0;  // clear of the tetrahedra
-  refuse_what_is_not_shown(config, *make_method(one, model, {}));
+  refuse_what_is_not_shown(config, *make_method(one, model, {}), more_fields(config));
 }
 
 void check_shown(const fdem::Config& config) {
@@ -289,7 +312,7 @@ void check_shown(const fdem::Config& config) {
   model.material.resize(count);
   model.velocity.resize(count);
   model.strength.assign(count, 1.0F);
-  refuse_what_is_not_shown(config, *make_method(one, model, {}));
+  refuse_what_is_not_shown(config, *make_method(one, model, {}), more_fields(config));
 }
 
 void check_shown(const fdem3::Config& config) {
@@ -297,7 +320,7 @@ void check_shown(const fdem3::Config& config) {
   one.materials.emplace_back();
   add_fluids(config, one, part_outlet);
   add_bolts(config, one, put_in_space);
-  refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}));
+  refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}), more_fields(config));
 }
 
 }  // namespace breccia

@@ -116,6 +116,9 @@ TEST(CheckCoupled, finds_what_is_wrong_by_key) {
   EXPECT_TRUE(has(problems_of(good, "[output]", bond), "bond.b.tetrahedra = \"rock\" is none of"));
   const std::string stage = "[[spheres.stage]]\nname = \"s\"\nend = 1.0\n[output]";
   EXPECT_TRUE(has(problems_of(good, "[output]", stage), "stages stand above both methods"));
+  const std::string probe = "[[tetrahedra.probe]]\nname = \"F\"\n[output]";
+  EXPECT_TRUE(has(problems_of(good, "[output]", probe),
+                  "tetrahedra.probe is not a key: it stands above both methods, [[probe]]"));
   EXPECT_EQ(problems_of(staged), "");
   EXPECT_TRUE(has(problems_of(staged, "name = \"foot\"\nfix = []", "name = \"feet\"\nfix = []"),
                   "stage.drop.tetrahedra.support.name"));

@@ -57,11 +57,11 @@ TEST(CheckFdem3, RefusesWhatDoesNotFit) {
       {[](Config& c) {
          c.frictions.push_back({{"rock", "ice"}, 0.1});
        },
-       "friction.between: there is no material \"ice\""},
+       "friction[1].between = \"ice\" is no material; there are: rock"},
       {[](Config& c) {
          c.joint_laws[0].between = {"rock", "ice"};
        },
-       "joint.vein.between: there is no material \"ice\""},
+       "joint.vein.between = \"ice\" is no material; there are: rock"},
       {[](Config& c) { c.supports[0].name = "ball"; }, "the name is taken by a body or support"},
       {[](Config& c) {
          c.supports[0].fix = {"x", "spin"};
@@ -99,6 +99,15 @@ TEST(CheckFdem3, RefusesWhatDoesNotFit) {
          c.supports[0].region.around = "z";
        },
        "support.floor.min = 190 mm: the region takes nothing"},
+      {[](Config& c) {
+         fdem3::DiscontinuityConfig disc;
+         disc.name = "far";
+         disc.center = {0.0, 0.0, -0.3};
+         disc.normal = {0.0, 0.0, 2.0};
+         disc.radius = 1.0;
+         c.discontinuities = {disc};
+       },
+       "discontinuity.far.center: it lies in no body; block is nearest, "},
   };
   for (const auto& [change, words] : changes) {
     const std::string text = problems_with(change);

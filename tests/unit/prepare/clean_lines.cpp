@@ -151,6 +151,13 @@ TEST(CleanLines, tell_of_what_they_move) {
   const std::string told = merged_lines(body, near);
   EXPECT_TRUE(told.starts_with("merge moves 1 of 4 ends of the 2 lines")) << told;
   EXPECT_NE(told.find("by 0.000707 m at most"), std::string::npos) << told;
+  near.lines.push_back({Vec2{-0.04, 0.04}, {-0.039, 0.04}});  // far from all others
+  const std::string with_short = merged_lines(body, near);
+  EXPECT_TRUE(with_short.starts_with("merge moves 1 of 6 ends of the 3 lines")) << with_short;
+  EXPECT_NE(with_short.find("by 0.000707 m at most"), std::string::npos) << with_short;
+  EXPECT_NE(with_short.find("leaves out 1 line shorter than that, 0.001 m in all"),
+            std::string::npos)
+      << with_short;
   body.merge = 0.0;
   EXPECT_EQ(merged_lines(body, near), "");
 }

@@ -54,6 +54,7 @@ TEST_F(CsvNumbers, the_mark_that_spreadsheets_put_first_is_no_part_of_a_line) {
 }
 
 TEST_F(CsvNumbers, a_line_is_quoted_only_after_one_of_numbers) {
+  EXPECT_NE(refusal_of("x;y\n0,5;1,5\n").find("in metres; it has semicolons"), std::string::npos);
   EXPECT_NE(refusal_of("0,0\n1,b\n").find("line 2: \"1,b\" is not x,y"), std::string::npos);
   for (const char* names : {"", "user:secret\n"}) {  // of a file that has nothing to do with it
     const std::string message = refusal_of(names + std::string("3:secret\n"));

@@ -300,8 +300,9 @@ TEST(JointDiscs, of_wrong_keys_are_a_problem) {
     return all.empty() ? std::string() : all.front();
   };
   EXPECT_EQ(problem([](auto&) {}), "");
-  EXPECT_EQ(problem([](auto& s) { s.kind = "cohesive", s.material = "week"; }),
-            "joint_set.set.material = \"week\" is not a joint law; there are: weak");
+  EXPECT_EQ(
+      problem([](auto& s) { s.kind = "cohesive", s.material = "week"; }),
+      "joint_set.set.material = \"week\" is not a joint law; there are: weak; did you mean weak?");
   EXPECT_EQ(problem([](auto& s) { s.max = s.min; }),
             "joint_set.set: random discs need the box that they fill, min and max");
   EXPECT_EQ(problem([](auto& s) { s.number = 3.0; }),

@@ -1,19 +1,17 @@
 // `breccia check` as people use it: what it says of size and cost, and how it mends slips.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "dem/setup/config.hpp"
-#include "fdem/setup/config.hpp"
 #include "io/case/problems.hpp"
 #include "io/whole_file.hpp"
 #include "paths.hpp"
-#include "prepare/build.hpp"
 #include "run/case.hpp"
 #include "run/case_keys.hpp"
-#include "run/machine/forecast.hpp"
+#include "unit/run/beam_case.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -33,62 +31,8 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-const std::string beam = R"(breccia = 1
-method = "fdem2d"
-[time]
-end = "1 ms"
-[material.stone]
-young = "30 GPa"
-[[body]]
-name = "beam"
-shape = "beam"
-structured = true
-material = "stone"
-size = ["300 mm", "40 mm"]
-mesh_size = "5 mm"
-[[support]]
-name = "left"
-min = ["-151 mm", "-21 mm"]
-max = ["-140 mm", "-19 mm"]
-)";
-
 std::string changed(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
-}
-
-TEST(Forecast, of_a_plate_is_near_what_the_model_has) {
-  const fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
-  const Forecast f = forecast(config, ".");
-  EXPECT_NEAR(f.items, 1109.0, 60.0);  // 0.3 x 0.04 m2 over triangles of 5 mm edges
-  EXPECT_NEAR(f.bonds, 1.5 * f.items - 68.0, 1.0);
-  EXPECT_NEAR(f.steps, 1e-3 / f.step, 1.0);
-  EXPECT_GT(f.here_s, 1e-9 * f.steps * f.items);
-  EXPECT_LT(f.here_s, 1e-5 * f.steps * f.items);
-  fdem::Config silent = config;
-  silent.output.frames = 0;
-  silent.output.history = config.time.end;
-  EXPECT_GT(f.output_s, 10.0 * forecast(silent, ".").output_s);
-  EXPECT_TRUE(has(f.step_rule, "joints") && has(f.step_rule, "5 mm")) << f.step_rule;
-}
-
-TEST(Forecast, of_a_file_of_spheres_counts_their_memory_and_packs_nothing) {
-  const ScratchFolder folder;
-  std::string spheres;
-  for (int i = 0; i < 30; ++i)
-    for (int j = 0; j < 30; ++j)
-      for (int k = 0; k < 30; ++k)
-        spheres += std::to_string(0.1 * i) + "," + std::to_string(0.1 * j) + "," +
-                   std::to_string(0.1 * k) + ",0.05\n";
-  replace_file(folder / "block.csv", spheres);
-  const std::string text =
-      "method = \"dem3d\"\ntime.end = 1e-3\n[material.c]\nlaw = \"concrete\"\n"
-      "[[body]]\nname = \"block\"\nshape = \"file\"\n"
-      "file = \"block.csv\"\nvolume = 27.0\nmaterial = \"c\"\n";
-  const Forecast f =
-      forecast(read_case<dem::Config>(CaseText{text, "block.toml"}, {}), folder.path());
-  EXPECT_EQ(f.items, 27000.0);
-  EXPECT_GT(f.memory, 27000.0 * 2000.0);
-  EXPECT_LT(f.setup_s, 1.0);
 }
 
 TEST(Check, tells_wrong_units_and_names_that_lead_nowhere_together) {
@@ -129,82 +73,21 @@ TEST(Check, names_the_file_of_grains_that_are_packed_too_densely_and_says_how_de
   EXPECT_TRUE(has(told.text, "with the model of ")) << told.text;
   EXPECT_TRUE(has(told.text, "heap.toml; nothing was run")) << told.text;
   EXPECT_TRUE(has(told.text, "smaller pack.compactness, such as 0.5")) << told.text;
+  EXPECT_TRUE(has(told.text, "line 6, body.heap: element ")) << told.text;
 }
 
-TEST(Forecast, of_tetrahedra_of_a_file_counts_what_the_file_holds) {
-  const std::string folder = std::string(source_dir) + "/cases/moving_box_3d";
-  const Case read = load_case(folder + "/small.toml", {});
-  const auto& config = std::get<fdem3::Config>(read.config);
-  const Forecast f = forecast(config, folder);
-  EXPECT_NEAR(f.items, 6.0 * 125.0 + 3.0 * 486.0, 1.0);  // 125 cubes, three plates
-  EXPECT_GT(f.steps, 1000.0);
-}
-
-TEST(Forecast, half_the_mesh_size_is_four_times_the_triangles_and_half_the_step) {
-  fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
-  const Forecast coarse = forecast(config, ".");
-  config.bodies.front().mesh_size *= 0.5;
-  const Forecast fine = forecast(config, ".");
-  EXPECT_NEAR(fine.items / coarse.items, 4.0, 1e-9);
-  EXPECT_NEAR(coarse.step / fine.step, 2.0, 0.1);
-}
-
-TEST(Forecast, of_concrete_by_its_grains_is_near_what_the_model_has) {
-  const std::string path = std::string(source_dir) + "/cases/ldpm_cube/small.toml";
-  dem::Config config = read_case<dem::Config>(path, {});
-  config.bodies.front().size = {0.12, 0.1, 0.05};  // more than a specimen
-  const Forecast f = forecast(config, ".");
-  const dem::Model model = build_model(config, ".");
-  EXPECT_NEAR(f.items / model.size(), 1.0, 0.06);
-  EXPECT_NEAR(f.bonds / static_cast<double>(model.links.size()), 1.0, 0.06);
-  EXPECT_NEAR(f.step, 0.69e-6, 0.1e-6);
-  EXPECT_GT(f.memory, 400.0 * f.bonds);
-  EXPECT_EQ(f.gpu_s, 0.0);
-}
-
-TEST(Forecast, counts_the_tests_for_a_fracture_energy_and_the_programs_own_memory) {
-  const std::string path = std::string(source_dir) + "/cases/dog_bone/small.toml";
-  const std::string folder = std::string(source_dir) + "/cases/dog_bone";
-  dem::Config config = read_case<dem::Config>(path, {});
-  const Forecast f = forecast(config, folder);
-  for (dem::MaterialConfig& m : config.materials) m.fracture_energy = 0.0;
-  const Forecast without = forecast(config, folder);
-  EXPECT_GT(f.setup_s, 5.0 * without.setup_s);
-  EXPECT_EQ(f.step, without.step);
-  EXPECT_GT(f.memory, 30e6);
-  EXPECT_FALSE(f.may_end_early);
-}
-
-TEST(Forecast, ends_with_the_last_of_stages_that_end_by_time_and_says_when_others_may_end_early) {
-  const std::string folder = std::string(source_dir) + "/cases/dfn_slope";
-  auto config = read_case<fdem::Config>(folder + "/small.toml", {});
-  ASSERT_EQ(config.time.end, 5.0);
-  const Forecast by_time = forecast(config, folder);
-  EXPECT_NEAR(by_time.steps, 0.8 / by_time.step, 1.0);  // stages of 0.3, 0.2 and 0.3 s
-  EXPECT_FALSE(by_time.may_end_early);
-  config.stages.back().until = 0.0;
-  EXPECT_NEAR(forecast(config, folder).steps, 5.0 / by_time.step, 1.0);
-  config.stages.front().rest = 1e-5;
-  EXPECT_TRUE(forecast(config, folder).may_end_early);
-}
-
-/// Whatever its joints meet: the specimen that is timed has none of them.
-TEST(Forecast, of_a_set_of_joints_in_space_does_not_depend_on_where_they_lie) {
-  const std::string folder = std::string(source_dir) + "/cases/jointed_prism";
-  auto config = read_case<fdem3::Config>(folder + "/small.toml", {});
-  const double step = forecast(config, folder).step;
-  config.seed = 2;
-  EXPECT_EQ(forecast(config, folder).step, step);
-}
-
-TEST(Forecast, memory_follows_the_pixels_of_the_pictures) {
-  fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
-  config.output.frames = 4;
-  const double as_low_as_the_beam = forecast(config, ".").memory;
-  config.output.height = 960;
-  EXPECT_NEAR(forecast(config, ".").memory - as_low_as_the_beam, 98.0 * 1280.0 * (960 - 358), 1e6);
-  config.output.pictures = false;
-  EXPECT_LT(forecast(config, ".").memory, as_low_as_the_beam - 40e6);
+TEST(Check, says_what_overlapping_spheres_of_a_file_need) {
+  const ScratchFolder folder;
+  replace_file(folder / "two.csv", "0,0,0,1\n0,0,1.9,1\n");
+  replace_file(folder / "two.toml",
+               "breccia = 1\nmethod = \"dem3d\"\ntime.end = 1e-3\n[material.gravel]\n"
+               "law = \"grain\"\n[[body]]\nname = \"two\"\nshape = \"file\"\n"
+               "file = \"two.csv\"\nmaterial = \"gravel\"\n");
+  const Told told = told_by(folder, "check " + (folder / "two.toml"));
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text, "line 6, body.two: element ")) << told.text;
+  EXPECT_TRUE(has(told.text, "spheres of its file lie in each other")) << told.text;
+  EXPECT_FALSE(has(told.text, "compactness")) << told.text;
 }
 
 TEST(CheckCommand, refuses_a_body_that_nobody_can_mesh) {
@@ -264,6 +147,35 @@ TEST(CheckCommand, names_line_and_key_of_a_region_that_takes_nothing) {
                   "line 16, support.left.min = 400 mm: the region takes nothing; beam is "
                   "nearest, 250 mm away, with x from -150 mm to 150 mm"))
       << told.text;
+}
+
+TEST(CheckCommand, names_a_crack_that_lies_beside_all_bodies) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/beam.toml";
+  const auto crack = [&](const std::string& points) {
+    replace_file(path, beam + "[[discontinuity]]\nname = \"far\"\npoints = " + points + "\n");
+    return told_by(folder, "check " + path);
+  };
+  const Told told = crack("[[0.4, -0.01], [0.45, 0.0], [0.45, 0.01]]");
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text,
+                  "line 20, discontinuity.far.points: it lies in no body; beam is nearest, 250 mm "
+                  "away"))
+      << told.text;
+  EXPECT_EQ(crack("[[0.4, -0.01], [0.1, 0.0]]").exit_code, 0);  // in part is enough
+}
+
+/// Frames of a run have fields that those of single elements lack.
+TEST(CheckCommand, takes_all_fields_that_frames_of_the_case_have) {
+  const ScratchFolder folder;
+  const std::string cases = source_dir + std::string("/cases/");
+  for (const auto& [name, color] :
+       {std::pair{"rc_slab", "bar"}, std::pair{"rc_slab", "held"},
+        std::pair{"rc_slab_ldpm", "opening"}, std::pair{"wing_crack", "held"}})
+    EXPECT_NO_THROW(
+        load_case(cases + name + "/small.toml", {std::string("output.color=\"") + color + "\""}))
+        << name << ' ' << color;
+  EXPECT_THROW(load_case(cases + "wing_crack/small.toml", {"output.color=\"bar\""}), InputError);
 }
 
 /// Of a model that takes long to build; others are built to be checked.

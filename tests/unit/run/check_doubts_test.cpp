@@ -57,6 +57,16 @@ name = "left"
 max = ["-0.49 m", "1 m"]
 )";
 
+TEST_F(Doubts, tell_of_openings_that_nothing_can_have) {
+  const std::string probe = "[[probe]]\nname = \"gap\"\nquantity = \"opening\"\n";
+  std::string loose = rock + probe;
+  loose.replace(loose.find("young"), 5, "joints = \"none\"\nyoung");
+  const std::string doubt = "line 24, probe.gap.quantity = \"opening\" is of joints";
+  EXPECT_TRUE(has(told_by("check", loose).text, doubt)) << told_by("check", loose).text;
+  EXPECT_TRUE(has(run(loose).text, doubt));
+  EXPECT_FALSE(has(told_by("check", rock + probe).text, "is of joints"));
+}
+
 TEST_F(Doubts, tell_what_bears_no_stress_in_situ) {
   const std::string sentence =
       "line 8, in_situ.xx: nothing bears the stress at the start, -5 MPa, on the side x = 500 mm "

@@ -2,6 +2,8 @@
 
 #include <signal.h>
 
+#include <sstream>
+
 #include "paths.hpp"
 #include "run/results/checkpoints.hpp"
 #include "unit/run/program_fixture.hpp"
@@ -129,12 +131,18 @@ on = "top"
 name = "y"
 on = "plat"
 quantity = "position_y"
+[[friction]]
+between = ["rock", "rok"]
+coefficient = 0.3
 )");
   EXPECT_EQ(run("check " + path("plate.toml")), 2);
   for (const char* part :
        {"support.held.on = \"floor\" is not a body; there are: plate",
         "load.push.on = \"top\" is not a body; there are: plate",
-        "probe.y.on = \"plat\" is neither a body (plate) nor a support (held)", "3 problems in "})
+        "probe.y.on = \"plat\" is neither a body (plate) nor a support (held); did you mean plate?",
+        "line 22, friction[1].between = \"rok\" is no material; there are: rock; did you mean "
+        "rock?",
+        "4 problems in "})
     EXPECT_NE(output().find(part), std::string::npos) << output();
 }
 
@@ -232,12 +240,25 @@ TEST_F(Program, SavesItsStateAtASignalAndResumesToTheSameBits) {
 
 TEST_F(Program, EndsBeforeItsWallTimeIsOverAndResumesToTheSameBits) {
   ASSERT_EQ(run("run " + path("long.toml") + " --steps 400000 -o " + path("whole")), 0) << output();
-  EXPECT_EQ(run("run " + path("long.toml") + " --max-wall 0.2s -o " + path("cut")), 10) << output();
+  EXPECT_EQ(run("run " + path("long.toml") + " --max-wall 0.5s -o " + path("cut")), 10) << output();
   EXPECT_NE(output().find("breccia resume"), std::string::npos) << output();
   EXPECT_EQ(summary("cut")["status"], "interrupted");
   ASSERT_LT(summary("cut")["steps"].get<int>(), 400000);
   EXPECT_EQ(run("resume " + path("cut") + " --threads 1 --steps 400000"), 0) << output();
   EXPECT_EQ(summary("cut")["state_hash"], summary("whole")["state_hash"]);
+}
+
+TEST_F(Program, EndsWhereItsModelIsNotBuiltWithinTheWallTime) {
+  replace_file(path("slow.toml"),
+               "breccia = 1\nmethod = \"dem3d\"\ntime.end = 1e-6\n[material.c]\n"
+               "law = \"concrete\"\nfracture_energy = \"100 J/m2\"\n[[body]]\nname = \"p\"\n"
+               "material = \"c\"\nsize = [0.1, 0.1, 0.2]\npack = { count = 1600 }\n");
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(run("run " + path("slow.toml") + " --max-wall 0.1s -o " + path("none")), 2);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+  EXPECT_NE(output().find("error: --max-wall 0.1s: the model was not yet built"), std::string::npos)
+      << output();
+  EXPECT_FALSE(fs::exists(path("none/summary.json")));
 }
 
 TEST_F(Program, RestartsFromACheckpointInANewFolder) {
@@ -407,7 +428,17 @@ TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   EXPECT_EQ(run("render " + path("out") + " -o " + path("picture.png") + " --color velocity"), 0)
       << output();
   EXPECT_TRUE(fs::exists(path("picture.png")));
+  EXPECT_EQ(run("info " + path("picture.png")), 0) << output();
+  EXPECT_NE(output().find("\ncase    balls, seed 1\nshows   "), std::string::npos) << output();
+  EXPECT_EQ(run("info " + path("out/fields")), 2);
+  EXPECT_NE(output().find("it is a part of one"), std::string::npos) << output();
   EXPECT_EQ(run("render " + path("out") + " --color no_such_field"), 2);
+  EXPECT_NE(output().find("no field \"no_such_field\" in this frame"), std::string::npos)
+      << output();
+  EXPECT_EQ(run("render " + path("out") + " --color velocity --log --range -1:1"), 2);
+  EXPECT_NE(output().find("--log needs values above 0"), std::string::npos) << output();
+  EXPECT_EQ(run("render " + path("out") + " --camera no.toml"), 2);
+  EXPECT_NE(output().find("no such camera file; nothing was drawn"), std::string::npos) << output();
   EXPECT_EQ(run("render " + path("out") + " -o " + path("picture.jpg")), 2);
   EXPECT_FALSE(fs::exists(path("picture.jpg")));
   EXPECT_EQ(run("report " + path("out")), 0) << output();
@@ -418,6 +449,25 @@ TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   EXPECT_EQ(run("keys no_such_prefix"), 2);
   EXPECT_EQ(run("--version"), 0);
   EXPECT_EQ(run("run --help"), 0);
+}
+
+TEST_F(Program, FoldsTheTextsOfOptionsOnce) {
+  constexpr std::size_t column = 30, width = 80;  // of texts, of the terminal
+  const auto text_of = [](const std::string& line) -> std::string {
+    const bool begins = line.size() > column && line.substr(column - 2, 2) == "  ";
+    return line.starts_with(' ') && begins ? line.substr(column) : "";
+  };
+  for (const char* command : {"run", "check", "render", "convert", "mesh info", "report", "test"}) {
+    EXPECT_EQ(run(std::string(command) + " --help"), 0);
+    std::istringstream lines(output());
+    std::string last;
+    for (std::string line; std::getline(lines, line); last = line) {
+      const std::string text = text_of(line);
+      if (text.empty() || text_of(last).empty() || line.find_first_not_of(' ') < column) continue;
+      const std::size_t word = std::min(text.find(' '), text.size());
+      EXPECT_GT(last.size() + 1 + word, width) << command << ": " << last << '\n' << line;
+    }
+  }
 }
 
 }  // namespace program_test
