@@ -99,9 +99,10 @@ void add_bench(CLI::App& program, Communicator* ranks) {
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   command
-      ->add_option("--precision", bench->precision,
-                   "what numbers are stored in: double or mixed, as the key `precision` of a case")
-      ->check(CLI::IsMember({"double", "mixed"}))
+      ->add_option(
+          "--precision", bench->precision,
+          "what numbers are stored in: double, mixed or single, as the key `precision` of a case")
+      ->check(CLI::IsMember({"double", "mixed", "single"}))
       ->capture_default_str();
   command->add_flag(
       "--paced", bench->paced,

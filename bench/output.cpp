@@ -11,6 +11,7 @@
 
 #include "bench/benchmark.hpp"
 #include "bench/scenes.hpp"
+#include "core/precision.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
@@ -83,7 +84,7 @@ std::string benchmark_json(const std::vector<std::pair<std::string, std::vector<
   const Build& build = this_build();
   Json json;
   json["machine"] = {{"cpu", processor_name()}, {"device", device}, {"threads", exec.threads}};
-  json["precision"] = exec.precision == Precision::mixed ? "mixed" : "double";
+  json["precision"] = word_of(exec.precision);
   json["breccia"] = {{"version", build.version},
                      {"commit", build.commit},
                      {"build", {{"type", build.type}, {"compiler", build.compiler}}}};

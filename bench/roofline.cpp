@@ -25,7 +25,7 @@ constexpr double size = sizeof(T);
 
 /// Elements, links: as many as there are, their sizes as they are stored.
 std::vector<CountedKernel> counted(const dem::World& w) {
-  const bool mixed = w.exec.precision == Precision::mixed;
+  const bool mixed = w.exec.precision != Precision::full;
   const double elements = w.elements.size(), links = w.links();
   const double number = mixed ? size<float> : size<double>;
   const double action = size<dem::PairForce>;
@@ -46,7 +46,7 @@ std::vector<CountedKernel> counted(const dem::World& w) {
 }
 
 std::vector<CountedKernel> counted(const fdem::World& w) {
-  const bool mixed = w.exec.precision == Precision::mixed;
+  const bool mixed = w.exec.precision != Precision::full;
   const double joint_force = mixed ? size<fdem::JointForceOf<float>> : size<fdem::JointForce>;
   const double couple_force = mixed ? size<fdem::CoupleForceOf<float>> : size<fdem::CoupleForce>;
   const double triangles = w.triangles.size(), joints = w.joints.size();

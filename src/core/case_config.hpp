@@ -201,9 +201,11 @@ struct CaseConfig {
     key("method", method, OneOf{"dem3d", "fdem2d", "fdem3d"},
         "which method runs the case: spheres in space (Durand et al. 2012), triangles in the plane "
         "(Lukas et al. 2014), tetrahedra in space");
-    key("precision", precision, OneOf{"double", "mixed"},
+    key("precision", precision, OneOf{"double", "mixed", "single"},
         "what numbers are stored in; mixed keeps positions and sums in double, and what links keep "
-        "and do and forces of joints and couples in single precision: fewer bytes, for GPUs");
+        "and do and forces of joints and couples in single precision: fewer bytes, for GPUs; "
+        "single "
+        "computes cohesive links of spheres in single precision, too");
     key("title", title, "one line for people");
     key("seed", seed, "-", Range{0, 9e15}, "seed of every random choice");
     key.table("time", time, "how long and how fast");

@@ -10,6 +10,7 @@
 //   slow(i)                optional: what few items need. update() then returns false, with nothing
 //                          stored, where the item, or one of its pack, is left to slow(); it knows
 //                          no time
+//   Item                   optional: the type of one item's numbers, if it is not double
 //   set(now)               gives the kernel the time of a step
 //
 // A kernel whose items nothing reads ahead has operator()(i) alone, and may have set(now). One that
@@ -35,6 +36,21 @@ concept HasSlow = requires(const Kernel& kernel) {
   kernel.slow(Index{});
 };
 
+/// What a kernel computes one item in: its member Item, else double.
+template <class Kernel>
+struct ItemType {
+  using type = double;
+};
+template <class Kernel>
+requires requires {
+  typename Kernel::Item;
+}
+struct ItemType<Kernel> {
+  using type = typename Kernel::Item;
+};
+template <class Kernel>
+using ItemOf = typename ItemType<Kernel>::type;
+
 /// Numbers that a kernel loads of one item, as the member Loaded; none if it loads nothing ahead.
 template <class Kernel>
 struct LoadedBy {};
@@ -44,7 +60,7 @@ struct LoadedBy<Kernel> {
 };
 template <LoadsPacks Kernel>
 struct LoadedBy<Kernel> {
-  using Loaded = typename Kernel::template Loaded<double>;
+  using Loaded = typename Kernel::template Loaded<ItemOf<Kernel>>;
 };
 
 /// Item i, or i and its neighbours in a pack, at one go. @returns what update() returns

@@ -6,17 +6,26 @@
 
 #include "exec/space.hpp"
 #include "exec/types.hpp"
+#include "math/single.hpp"
 
 namespace breccia {
 
 /// The word of a case for it.
 inline Precision precision_of(const std::string& word) {
-  return word == "mixed" ? Precision::mixed : Precision::full;
+  return word == "mixed"    ? Precision::mixed
+         : word == "single" ? Precision::single
+                            : Precision::full;
 }
 
 inline Exec in_precision(Exec exec, const std::string& word) {
   exec.precision = precision_of(word);
   return exec;
+}
+
+inline const char* word_of(Precision precision) {
+  return precision == Precision::mixed    ? "mixed"
+         : precision == Precision::single ? "single"
+                                          : "double";
 }
 
 /// A state in the one or the other precision: one of the two is empty.
@@ -27,14 +36,14 @@ struct Stored {
 
   template <class Number>
   auto& as() {
-    if constexpr (std::is_same_v<Number, float>)
+    if constexpr (std::is_same_v<StoredAs<Number>, float>)
       return in_single;
     else
       return in_double;
   }
   template <class Number>
   const auto& as() const {
-    if constexpr (std::is_same_v<Number, float>)
+    if constexpr (std::is_same_v<StoredAs<Number>, float>)
       return in_single;
     else
       return in_double;
@@ -54,8 +63,15 @@ BR_HD const Record& as_in_memory(Record& stored) {
 /// visit(0.0) or visit(0.0F): the type tells what numbers are stored in.
 template <class Visit>
 decltype(auto) with_number(Precision precision, const Visit& visit) {
-  if (precision == Precision::mixed) return visit(0.0F);
+  if (precision != Precision::full) return visit(0.0F);
   return visit(0.0);
+}
+/// visit(0.0), visit(0.0F) or visit(Single()): the type tells what numbers are stored in, and
+/// Single that they are computed in single precision, too.
+template <class Visit>
+decltype(auto) with_arithmetic(Precision precision, const Visit& visit) {
+  if (precision == Precision::single) return visit(Single());
+  return with_number(precision, visit);
 }
 
 }  // namespace breccia

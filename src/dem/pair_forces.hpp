@@ -66,6 +66,26 @@ BR_HD inline void write_actions(const View<PairForceOf<Number>>& actions, Index 
 #endif
 }
 
+template <class Actions>
+BR_HD inline void write_actions(const Actions& actions, Index at, const Single (&numbers)[9],
+                                const Single (&stiffness)[9]) {
+  double wide[9], wide_stiffness[9];
+  for (int k = 0; k < 9; ++k) {
+    wide[k] = widened(numbers[k]);
+    wide_stiffness[k] = widened(stiffness[k]);
+  }
+  write_actions(actions, at, wide, wide_stiffness);
+}
+#if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
+inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
+                          const SinglePack (&numbers)[9], const SinglePack (&stiffness)[9]) {
+  constexpr int stride = sizeof(PairForceOf<float>) / sizeof(float);
+  BR_ASSERT(at >= 0 && at + width_of<SinglePack> <= actions.size);
+  write_rows<stride>(numbers, actions.data[at].numbers);
+  write_rows<stride>(stiffness, actions.data[at].stiffness);
+}
+#endif
+
 /// Writes an action alone.
 BR_HD inline void write_action(PairForce& to, const double (&numbers)[9],
                                const double (&stiffness)[9]) {
@@ -98,7 +118,7 @@ BR_HD inline void write_actions(const TileActions& actions, Index at, const doub
 /// Adds to the energy that item i, or each of a pack, has spent so far.
 template <class Actions, class R>
 BR_HD inline void book(const Actions&, const View<double>& spent, Index i, const R& more) {
-  store(spent, i, load<R>(spent, i) + more);
+  add_to(spent, i, more);
 }
 /// One thread alone adds to a number, so that an addition without an answer gives the same bits.
 BR_HD inline void book(const TileActions& actions, const View<double>& spent, Index, double more) {

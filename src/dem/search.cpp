@@ -421,6 +421,11 @@ void list_laws(LinkSet<Law>& set) {
   }
   copy_to(set.on_device.laws, laws);
   copy_to(set.on_device.ends, ends);
+  if constexpr (LinkSet<Law>::kind == LinkKind::concrete) {
+    std::vector<ConcreteLinkOf<float>> rounded;
+    for (const Law& law : laws) rounded.push_back(law.template as<float>());
+    copy_to(set.on_device.in_single, rounded);
+  }
 }
 
 struct NameActions {

@@ -120,6 +120,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
          critical, rows_a, rows_b, link_actions.in_double, link_actions.in_single, device_walls,
          clock, beyond);
     each_set([&](auto& set) { each(set.on_device.laws, set.on_device.ends); });
+    each(concrete.on_device.in_single);
     each(ldpm.edges.of, ldpm.edges.leads, ldpm.edges.stiffness, ldpm.edges.shares);
   }
 

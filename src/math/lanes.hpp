@@ -4,15 +4,35 @@
 
 #include "exec/buffer.hpp"
 #include "exec/early.hpp"
+#include "math/single.hpp"
 #include "math/vec.hpp"
 
 namespace breccia {
 
+/// Items first, first + 1, ... of an array of doubles, not rounded to R.
+template <class R, class T>
+BR_HD inline Wide<R> load_wide(const View<T>& array, Index first) {
+  if constexpr (width_of<R> == 1) {
+    return array[first];
+  } else {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    Wide<R> packs;
+    __builtin_memcpy(&packs, array.data + first, sizeof packs);
+    return packs;
+  }
+}
 /// Items first, first + 1, ... of an array of doubles or floats.
 template <class R, class T>
 BR_HD inline R load(const View<T>& array, Index first) {
   if constexpr (width_of<R> == 1) {
-    return array[first];
+    return R(array[first]);
+  } else if constexpr (is_single<R> && sizeof(T) == sizeof(float)) {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    R pack;
+    __builtin_memcpy(&pack, array.data + first, sizeof pack);
+    return pack;
+  } else if constexpr (is_single<R>) {
+    return narrowed(load_wide<R>(array, first));
   } else if constexpr (sizeof(T) == sizeof(float)) {
     BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
     typename TypesOf<R>::Single single;
@@ -27,8 +47,14 @@ BR_HD inline R load(const View<T>& array, Index first) {
 }
 template <class R>
 BR_HD inline void store(const View<double>& array, Index first, const R& value) {
-  if constexpr (width_of<R> == 1) {
+  if constexpr (is_single<R> && width_of<R> == 1) {
+    array[first] = widened(value);
+  } else if constexpr (width_of<R> == 1) {
     array[first] = value;
+  } else if constexpr (is_single<R>) {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    const auto wide = widened(value);
+    __builtin_memcpy(array.data + first, &wide, sizeof wide);
   } else {
     BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
     __builtin_memcpy(array.data + first, &value, sizeof value);
@@ -37,12 +63,26 @@ BR_HD inline void store(const View<double>& array, Index first, const R& value) 
 /// Rounded to the nearest.
 template <class R>
 BR_HD inline void store(const View<float>& array, Index first, const R& value) {
-  if constexpr (width_of<R> == 1) {
+  if constexpr (is_single<R>) {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    __builtin_memcpy(array.data + first, &value, sizeof value);
+  } else if constexpr (width_of<R> == 1) {
     array[first] = static_cast<float>(value);
   } else {
     BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
     const auto single = __builtin_convertvector(value, typename TypesOf<R>::Single);
     __builtin_memcpy(array.data + first, &single, sizeof single);
+  }
+}
+
+/// Adds to items first, first + 1, ... of an array of doubles, in double.
+template <class R>
+BR_HD inline void add_to(const View<double>& array, Index first, const R& more) {
+  if constexpr (is_single<R>) {
+    const Wide<R> sum = load_wide<R>(array, first) + widened(more);
+    __builtin_memcpy(array.data + first, &sum, sizeof sum);
+  } else {
+    store(array, first, load<R>(array, first) + more);
   }
 }
 
@@ -53,11 +93,17 @@ template <>
 struct Indices<double> {
   Index at;
 };
+template <>
+struct Indices<Single> : Indices<double> {};
 template <class R>
 BR_HD inline Indices<R> load_indices(const View<const Index>& array, Index first);
 template <>
 BR_HD inline Indices<double> load_indices<double>(const View<const Index>& array, Index first) {
   return {array[first]};
+}
+template <>
+BR_HD inline Indices<Single> load_indices<Single>(const View<const Index>& array, Index first) {
+  return {{array[first]}};
 }
 
 /// load() and load_indices() where these calls stand: a device may wait between them for the launch
@@ -65,16 +111,25 @@ BR_HD inline Indices<double> load_indices<double>(const View<const Index>& array
 template <class R, class T>
 BR_HD inline R load_now(const View<T>& array, Index first) {
   if constexpr (width_of<R> == 1)
-    return read_now(&array[first]);
+    return R(read_now(&array[first]));
   else
     return load<R>(array, first);
 }
+template <class R, class T>
+BR_HD inline Wide<R> load_wide_now(const View<T>& array, Index first) {
+  if constexpr (width_of<R> == 1)
+    return read_now(&array[first]);
+  else
+    return load_wide<R>(array, first);
+}
 template <class R>
 BR_HD inline Indices<R> load_indices_now(const View<const Index>& array, Index first) {
+  Indices<R> indices;
   if constexpr (width_of<R> == 1)
-    return {read_now(&array[first])};
+    indices.at = read_now(&array[first]);
   else
-    return load_indices<R>(array, first);
+    indices = load_indices<R>(array, first);
+  return indices;
 }
 
 /// Reads the first `count` doubles of record i of an array, for each index of a pack: columns[k] is
@@ -299,6 +354,20 @@ inline void store_records(const View<Record>& records, Index first, const Pack4 
   }
 }
 
+#endif
+
+#if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
+/// They stay in memory.
+template <>
+struct Indices<SinglePack> {
+  const Index* first;
+  Index at(Index k) const { return first[k]; }
+};
+template <>
+inline Indices<SinglePack> load_indices<SinglePack>(const View<const Index>& array, Index first) {
+  BR_ASSERT(first >= 0 && first + width_of<SinglePack> <= array.size);
+  return {array.data + first};
+}
 #endif
 
 /// Numbers given one by one.

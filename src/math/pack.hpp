@@ -96,6 +96,25 @@ struct EightFloatSums {
 #endif
 };
 
+#if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
+/// Transposes eight rows of eight numbers in single precision.
+inline void transpose(__m256 (&r)[8]) {
+  __m256 pairs[8], quads[8];
+  for (int k = 0; k < 8; k += 2) {
+    pairs[k] = _mm256_unpacklo_ps(r[k], r[k + 1]);
+    pairs[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+  }
+  for (int k = 0; k < 8; k += 4)
+    for (int j = 0; j < 2; ++j) {
+      quads[k + 2 * j] = _mm256_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0x44);
+      quads[k + 2 * j + 1] = _mm256_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0xee);
+    }
+  for (int k = 0; k < 4; ++k) {
+    r[k] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x20);
+    r[k + 4] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x31);
+  }
+}
+#endif
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 
 using Pack8 = double __attribute__((vector_size(64)));
@@ -140,23 +159,6 @@ inline void transpose(Pack8 (&r)[8]) {
       r[2 * half + j] = _mm512_shuffle_f64x2(low, high, 0x88);
       r[4 + 2 * half + j] = _mm512_shuffle_f64x2(low, high, 0xdd);
     }
-}
-/// Transposes eight rows of eight numbers in single precision.
-inline void transpose(__m256 (&r)[8]) {
-  __m256 pairs[8], quads[8];
-  for (int k = 0; k < 8; k += 2) {
-    pairs[k] = _mm256_unpacklo_ps(r[k], r[k + 1]);
-    pairs[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
-  }
-  for (int k = 0; k < 8; k += 4)
-    for (int j = 0; j < 2; ++j) {
-      quads[k + 2 * j] = _mm256_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0x44);
-      quads[k + 2 * j + 1] = _mm256_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0xee);
-    }
-  for (int k = 0; k < 4; ++k) {
-    r[k] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x20);
-    r[k + 4] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x31);
-  }
 }
 using WidestPack = Pack8;
 

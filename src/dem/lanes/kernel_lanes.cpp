@@ -10,6 +10,10 @@ namespace {
 
 constexpr Index width = width_of<WidestPack>;
 
+/// Packs that a kernel takes: of the numbers that it computes in.
+template <class Kernel>
+using PackOf = std::conditional_t<is_single<ItemOf<Kernel>>, SinglePack, WidestPack>;
+
 /// Asks the memory for a pack of items of an array.
 template <class T>
 void fetch(const View<T>& array, Index first) {
@@ -36,11 +40,12 @@ template <class Kernel>
 BR_WHOLE Index BR_PACKS::run(const Kernel& kernel, Index begin, Index end) {
   if constexpr (requires { kernel.template sweep<WidestPack>(begin, end); })
     return kernel.template sweep<WidestPack>(begin, end);
+  using Pack = PackOf<Kernel>;
   Index i = begin;
-  for (; i + width <= end; i += width) {
-    if constexpr (std::is_void_v<decltype(run_at<WidestPack>(kernel, i))>)
-      run_at<WidestPack>(kernel, i);
-    else if (!run_at<WidestPack>(kernel, i))
+  for (; i + width_of<Pack> <= end; i += width_of<Pack>) {
+    if constexpr (std::is_void_v<decltype(run_at<Pack>(kernel, i))>)
+      run_at<Pack>(kernel, i);
+    else if (!run_at<Pack>(kernel, i))
       break;
   }
   return i;

@@ -32,6 +32,9 @@ template <class R>
 struct LinkPair {
   PairEnds<R> motion;
   R radius_a, radius_b;
+
+  BR_HD R touching() const { return radius_a + radius_b; }
+  BR_HD R difference() const { return radius_a - radius_b; }
 };
 template <class R>
 BR_HD inline LinkPair<R> link_pair(const LinkEnd<R>& a, const LinkEnd<R>& b) {

@@ -2,68 +2,11 @@
 // The cohesive link of concrete: modified Mohr-Coulomb with softening and moment transfer.
 
 #include "dem/laws/concrete_parts.hpp"
-#include "dem/laws/pair_motion.hpp"
+#include "dem/laws/link_state.hpp"
+#include "dem/laws/rate_curve.hpp"
 #include "dem/laws/tension_softening.hpp"
-#include "math/elementary.hpp"
 
 namespace breccia::dem {
-
-/// State of a link, kept from step to step.
-template <class R>
-struct LinkState {
-  R opening;         ///< largest opening so far, >= 0; link_broken or link_released afterwards  [m]
-  Vec3Of<R> shear;   ///< F_s on b, world frame  [N]
-  Vec3Of<R> moment;  ///< M on b, world frame  [N m]
-  R rate = {};  ///< smoothed strain rate [1/s]; minus DIF [-] from the peak on; rated laws only
-};
-inline constexpr double link_broken =
-    -1.0;  ///< LinkState::opening of a link that answers as a contact
-inline constexpr double link_released = -2.0;  ///< ... of a link whose ends have parted for good
-
-/// Response of the law in one step.
-template <class R>
-struct LinkResponse {
-  R normal;          ///< N, tension positive  [N]
-  Vec3Of<R> shear;   ///< F_s on b  [N]
-  Vec3Of<R> moment;  ///< M on b  [N m]
-  R active;          ///< 1 where the link resists, 0 where it does not: share of its stiffness  [-]
-  R shortened;       ///< what compaction took off D_eq in this step  [m]
-  R slid;            ///< energy spent on sliding in this step  [J]
-  R yielded;         ///< energy spent on plastic moments and compaction in this step  [J]
-  R broke;           ///< energy spent on rupture in this step, and what wear corrects of it  [J]
-};
-
-/// Constants of one link.
-template <class R>
-struct LinkConstants {
-  R length;                     ///< D_eq, at which it is free of force  [m]
-  R stiffness;                  ///< K_n  [N/m]
-  R area;                       ///< S, pi min(R_a, R_b)^2 times the share of fabric  [m2]
-  R radius;                     ///< r, mean of the two  [m]
-  R touching;                   ///< R_a + R_b  [m]
-  R factor = constant<R>(1.0);  ///< DIF: dynamic over static tensile strength  [-]
-};
-
-/// Tensile strength over strain rate e, dynamic over static (DIF):
-///
-///   DIF = (e / e_s)^delta                          up to the bend e_1, e_s = 1e-6/s
-///   DIF = (e_1 / e_s)^delta (e / e_1)^(1/3)        beyond, until 160/s, as far as tests go
-///
-/// Malvar and Ross 1998: delta = 1 / (1 + 8 f_c / 10 MPa), e_1 = 1/s. fib Model Code
-/// 2010, 5.1.11.2: delta = 0.018, e_1 = 10/s.
-struct RateCurve {
-  double exponent;  ///< delta; 0: strength does not depend on rate  [-]
-  double bend;      ///< ln(e_1 / e_s)  [-]
-  double speed;  ///< of the wave in a bar over the crossings that count: D / time constant  [m/s]
-
-  template <class R>
-  BR_HD R factor(const R& rate) const {
-    const R held = min(max(rate, constant<R>(1e-6)), constant<R>(160.0));
-    const R x = logarithm<R>(1e6 * held);
-    const R beyond = max(x - bend, constant<R>(0.0));
-    return exponential<R>(exponent * (x - beyond) + beyond * (1.0 / 3.0));
-  }
-};
 
 /// Cohesive link and, after rupture, the contact that is left of it (docs/theory.md, cohesive
 /// links).
@@ -88,32 +31,65 @@ struct RateCurve {
 ///
 /// Tension and opening are positive. Shear force and moment act on b; a gets the opposite.
 /// Source: Durand 2012, section 2; law of the Rousseau 2008 family, completed in docs/theory.md.
-struct ConcreteLink {
-  double tensile_strength;      ///< T  [Pa]
-  double cohesion;              ///< C  [Pa]
-  double softening;             ///< zeta >= 0  [-]
-  double rupture_opening;       ///< u_2, which rules instead of zeta; 0: zeta rules  [m]
-  double friction;              ///< tan phi_i of the intact link  [-]
-  double broken_friction;       ///< mu_b  [-]
-  double friction_cap;          ///< s_F, 0: none  [Pa]
-  double friction_fades;        ///< 1: friction nears s_F slowly; 0: it grows until it is s_F
-  double hyperbolic;            ///< 1: shear strength ends at T by a hyperbola; 0: at a corner
-  double shear_ratio;           ///< K_t / K_n  [-]
-  double rolling_ratio;         ///< beta_r = K_r / (K_t r^2)  [-]
-  double rolling_limit;         ///< eta of the intact link  [-]
-  double broken_rolling_limit;  ///< eta_b  [-]
-  double rolling_cap;           ///< s_M, 0: none  [Pa]
-  double brittle_shear;         ///< 1: a link breaks at its shear strength; 0: it slides on  [-]
-  double slip_wear;             ///< w_s  [-]
-  double turn_wear;             ///< w_m  [-]
-  double modulus;               ///< K = K_n D_0 / S  [Pa]
-  double compaction_strength;   ///< Y_c, 0: none  [Pa]
-  double compaction_slope;      ///< H_c < 1, tangent beyond it over K_n  [-]
-  double crushing_strength;     ///< Y_b, 0: none  [Pa]
-  double crushing_slope;        ///< H_b < 1  [-]
-  double closing_strain;        ///< p_c at which D_eq shortens no further, 0: none  [-]
-  RateCurve rate;               ///< of T
-  SofteningKnee knee;           ///< of the falling branch in tension
+/// @tparam N  of its constants: double, float for links in single precision
+template <class N>
+struct ConcreteLinkOf {
+  N tensile_strength;      ///< T  [Pa]
+  N cohesion;              ///< C  [Pa]
+  N softening;             ///< zeta >= 0  [-]
+  N rupture_opening;       ///< u_2, which rules instead of zeta; 0: zeta rules  [m]
+  N friction;              ///< tan phi_i of the intact link  [-]
+  N broken_friction;       ///< mu_b  [-]
+  N friction_cap;          ///< s_F, 0: none  [Pa]
+  N friction_fades;        ///< 1: friction nears s_F slowly; 0: it grows until it is s_F
+  N hyperbolic;            ///< 1: shear strength ends at T by a hyperbola; 0: at a corner
+  N shear_ratio;           ///< K_t / K_n  [-]
+  N rolling_ratio;         ///< beta_r = K_r / (K_t r^2)  [-]
+  N rolling_limit;         ///< eta of the intact link  [-]
+  N broken_rolling_limit;  ///< eta_b  [-]
+  N rolling_cap;           ///< s_M, 0: none  [Pa]
+  N brittle_shear;         ///< 1: a link breaks at its shear strength; 0: it slides on  [-]
+  N slip_wear;             ///< w_s  [-]
+  N turn_wear;             ///< w_m  [-]
+  N modulus;               ///< K = K_n D_0 / S  [Pa]
+  N compaction_strength;   ///< Y_c, 0: none  [Pa]
+  N compaction_slope;      ///< H_c < 1, tangent beyond it over K_n  [-]
+  N crushing_strength;     ///< Y_b, 0: none  [Pa]
+  N crushing_slope;        ///< H_b < 1  [-]
+  N closing_strain;        ///< p_c at which D_eq shortens no further, 0: none  [-]
+  RateCurve rate;          ///< of T
+  SofteningKnee knee;      ///< of the falling branch in tension
+
+  /// With constants rounded to another type.
+  template <class Other>
+  ConcreteLinkOf<Other> as() const {
+    const auto to = [](N number) { return static_cast<Other>(number); };
+    return {to(tensile_strength),
+            to(cohesion),
+            to(softening),
+            to(rupture_opening),
+            to(friction),
+            to(broken_friction),
+            to(friction_cap),
+            to(friction_fades),
+            to(hyperbolic),
+            to(shear_ratio),
+            to(rolling_ratio),
+            to(rolling_limit),
+            to(broken_rolling_limit),
+            to(rolling_cap),
+            to(brittle_shear),
+            to(slip_wear),
+            to(turn_wear),
+            to(modulus),
+            to(compaction_strength),
+            to(compaction_slope),
+            to(crushing_strength),
+            to(crushing_slope),
+            to(closing_strain),
+            rate,
+            knee};
+  }
 
   /// One step of a link (R = double) or of a pack of links.
   /// @tparam parts  those that this law may have: parts() and any more
@@ -156,7 +132,8 @@ struct ConcreteLink {
   BR_HD R factor_of(const LinkConstants<R>& link, const R& opening, const R& kept_rate) const {
     const R one = constant<R>(1.0);
     if (!rated()) return one;
-    const R borne = (1.0 + 1e-9) * link.stiffness * opening / (tensile_strength * link.area);
+    const R borne = (1.0 + (is_single<R> ? 1e-6 : 1e-9)) * link.stiffness * opening /
+                    (tensile_strength * link.area);
     return select(kept_rate < 0.0, -1.0 * kept_rate, max(one, borne));
   }
   /// 1 - secant stiffness / K_n of an intact link after a largest opening >= 0.  [-]
@@ -211,6 +188,11 @@ struct ConcreteLink {
     R shortened;  ///< by compaction  [m]
     R crushed;    ///< energy that compaction spent  [J]
   };
+  /// A shear force or moment, carried to where the pair is, and with this step's increment.
+  template <class R>
+  struct Carried {
+    Vec3Of<R> before, trial;
+  };
   /// A shear force or moment after its limit.
   template <class R>
   struct Cut {
@@ -231,7 +213,7 @@ struct ConcreteLink {
                           constant<R>(rupture_opening)};
     if constexpr ((parts & concrete_knee) != 0) t.knee = knee;
     if constexpr ((parts & concrete_rated) != 0) {
-      if (!t.ends_given) t.last = slow * (1.0 + softening) / link.stiffness;
+      if (!t.ends_given) t.last = slow * (N(1) + softening) / link.stiffness;
       t.ends_given = true;
       t.strength = link.factor * slow;
       t.last = max(t.last, 1.02 * t.onset());  // a link that is brittle at this rate
@@ -253,18 +235,16 @@ struct ConcreteLink {
     if (compacts<parts>()) compact(s, link, motion);
 
     // 2. Shear force and moment: carried with the pair, then this step's increment.
-    const Vec3Of<R> shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
-    const Vec3Of<R> moment_before = motion.rotated_with_pair(state.moment);
-    const Vec3Of<R> shear_trial = shear_before - kt * motion.slip;
-    const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
+    const Carried<R> shear = carried_shear(link, motion, state.shear, kt);
+    const Carried<R> moment = carried_moment(link, motion, state.moment, kr);
 
     // 3. Their limits.
-    const R shear_limit = limit_shear<parts>(s, link, dot(shear_trial, shear_trial));
+    const R shear_limit = limit_shear<parts>(s, link, dot(shear.trial, shear.trial));
     const auto survives = s.holds && !s.sheared;
     const auto acts = survives || (s.pressed && !s.parted);
     const R moment_limit = limit_moment<parts>(s, link, survives);
-    const Cut<R> slide = cut(shear_before, shear_trial, shear_limit, acts, kt);
-    const Cut<R> roll = cut(moment_before, moment_trial, moment_limit, acts, kr);
+    const Cut<R> slide = cut(shear.before, shear.trial, shear_limit, acts, kt);
+    const Cut<R> roll = cut(moment.before, moment.trial, moment_limit, acts, kr);
 
     LinkResponse<R> r;
     r.normal = select(acts, s.normal, zero);
@@ -290,6 +270,31 @@ struct ConcreteLink {
     return r;
   }
 
+  /// In single precision all that changes in a step is added at one go, and rounded by chance.
+  template <class R>
+  BR_HD static Carried<R> carried_shear(const LinkConstants<R>& link, const PairMotion<R>& motion,
+                                        const Vec3Of<R>& kept, const R& kt) {
+    if constexpr (is_single<R>) {
+      const Vec3Of<R> turned = motion.change_with_pair(kept);
+      const Vec3Of<R> change = turned - dot(kept + turned, motion.normal) * motion.normal;
+      return {kept + change, sum_by(link.chance, 0, kept, change - kt * motion.slip)};
+    } else {
+      const Vec3Of<R> before = motion.tangential(motion.rotated_with_pair(kept));
+      return {before, before - kt * motion.slip};
+    }
+  }
+  template <class R>
+  BR_HD static Carried<R> carried_moment(const LinkConstants<R>& link, const PairMotion<R>& motion,
+                                         const Vec3Of<R>& kept, const R& kr) {
+    if constexpr (is_single<R>) {
+      const Vec3Of<R> change = motion.change_with_pair(kept);
+      return {kept + change, sum_by(link.chance, 16, kept, change - kr * motion.turn)};
+    } else {
+      const Vec3Of<R> before = motion.rotated_with_pair(kept);
+      return {before, before - kr * motion.turn};
+    }
+  }
+
   /// The strength of this step by the strain rate: e' = (e + dD/(D tau)) / (1 + dt/tau), held from
   /// the step on in which the link is stretched beyond it. The curve is asked only by links beyond
   /// their static strength.
@@ -302,7 +307,7 @@ struct ConcreteLink {
     const R smooth = max(constant<R>(0.0), (state.rate + gained) / (1.0 + crossed));
     state.rate = select(waits, smooth, state.rate);
     link.factor = factor_of(link, state.opening, state.rate);
-    const R stretch = max(state.opening, motion.distance - link.length);
+    const R stretch = max(state.opening, stretch_of(link, motion));
     hold_factor(link, waits, stretch, state);
   }
   /// Holds the factor of waiting links whose opening reaches beyond their dynamic strength.
@@ -324,7 +329,7 @@ struct ConcreteLink {
     const R zero = constant<R>(0.0), one = constant<R>(1.0), kn = link.stiffness;
     const TensionSoftening<R> t = tension_of<parts>(link);
     Stand<R> s;
-    s.stretch = motion.distance - link.length;
+    s.stretch = stretch_of(link, motion);
     s.intact = opening_before >= 0.0;
     s.opening = max(opening_before, s.stretch);
     s.torn = s.intact && kn * s.opening >= t.elastic_at_rupture();
@@ -458,13 +463,19 @@ struct ConcreteLink {
     const TensionSoftening<R> t = tension_of<parts>(link);
     // a little beyond u_2, so that rounding cannot keep the link whole
     const R last = (1.0 + 1e-6) * t.rupture();
-    const R after = max(s.opening, min(s.opening + wear, last));
+    const R after = max(s.opening, min(opened_by(link, s.opening, wear), last));
     const R softer = s.health - (1.0 - t.damage(after));
     const R next = max(constant<R>(0.0), s.stretch + motion.extension);
     const R released =
         select(s.pressed, constant<R>(0.0), 0.5 * link.stiffness * softer * s.stretch * next);
     r.broke = select(worn, t.spent(s.opening) - t.spent(after) + released, r.broke);
     state.opening = select(worn, after, state.opening);
+  }
+
+  template <class R>
+  BR_HD static R opened_by(const LinkConstants<R>& link, const R& opening, const R& wear) {
+    if constexpr (is_single<R>) return sum_by(link.chance, 29, opening, wear);
+    return opening + wear;
   }
 
   template <ConcreteParts parts, class R>
@@ -482,5 +493,7 @@ struct ConcreteLink {
     state.opening = select(ends, constant<R>(link_broken), state.opening);
   }
 };
+
+using ConcreteLink = ConcreteLinkOf<double>;
 
 }  // namespace breccia::dem

@@ -24,5 +24,12 @@ BR_HD inline bool is_given(double constant) {
   return constant > 0.0;
 #endif
 }
+BR_HD inline bool is_given(float constant) {
+#if defined(__CUDA_ARCH__)
+  return __float_as_int(constant) > 0;
+#else
+  return constant > 0.0F;
+#endif
+}
 
 }  // namespace breccia::dem

@@ -2,6 +2,7 @@
 // How a pair of elements has moved in the last step, as every law of the DEM sees it.
 
 #include "math/lanes.hpp"
+#include "math/single.hpp"
 
 namespace breccia::dem {
 
@@ -19,6 +20,26 @@ struct PairEnds {
   Vec3Of<R> way;             ///< from a to b  [m]
   Vec3Of<R> parting;         ///< velocity of b less that of a  [m/s]
   Vec3Of<R> spin_a, spin_b;  ///<  [rad/s]
+
+  BR_HD Vec3Of<R> both_spins() const { return spin_a + spin_b; }
+  BR_HD Vec3Of<R> turning() const { return spin_b - spin_a; }
+  /// Sum of the spins, each times its arm; their velocities of the contact point are across it.
+  BR_HD Vec3Of<R> by_arms(const R& arm_a, const R& arm_b) const {
+    return arm_b * spin_b + arm_a * spin_a;
+  }
+};
+/// Likewise in single precision, where differences are taken in double before they are rounded.
+template <class V>
+struct PairEnds<SingleOf<V>> {
+  using R = SingleOf<V>;
+  Vec3Of<R> way, parting;
+  Vec3Of<R> spins, turns;  ///< spin of b with, and less, that of a  [rad/s]
+
+  BR_HD Vec3Of<R> both_spins() const { return spins; }
+  BR_HD Vec3Of<R> turning() const { return turns; }
+  BR_HD Vec3Of<R> by_arms(const R& arm_a, const R& arm_b) const {
+    return 0.5 * (arm_a + arm_b) * spins + 0.5 * (arm_b - arm_a) * turns;
+  }
 };
 template <class R>
 BR_HD PairEnds<R> ends_of(const PairEnd<R>& a, const PairEnd<R>& b) {
@@ -44,9 +65,11 @@ struct PairMotion {
   /// A vector kept by the pair (shear force, moment), turned with the pair: Cayley's form of the
   /// rotation that brings the old normal to the new one and spins about it by the mean spin. It
   /// keeps the length.
-  BR_HD Vec3Of<R> rotated_with_pair(const Vec3Of<R>& v) const {
+  BR_HD Vec3Of<R> rotated_with_pair(const Vec3Of<R>& v) const { return v + change_with_pair(v); }
+  /// What that adds to the vector.
+  BR_HD Vec3Of<R> change_with_pair(const Vec3Of<R>& v) const {
     const Vec3Of<R> w = cross(half_turn, v);
-    return v + turn_scale * (w + cross(half_turn, w));
+    return turn_scale * (w + cross(half_turn, w));
   }
   /// Part of a vector across the normal.
   BR_HD Vec3Of<R> tangential(const Vec3Of<R>& v) const { return v - dot(v, normal) * normal; }
@@ -89,17 +112,17 @@ BR_HD PairMotion<R> pair_motion(const PairEnds<R>& ends, const R& excess, double
   const Vec3Of<R> swing =
       half * (1.0 - quarter * square * (1.0 - square * (half - 0.3125 * square))) * tangent;
   const Vec3Of<R> middle = m.normal + cross(m.normal, swing);  // along old + new normal
-  const R spin = quarter * step *
-                 dot(m.normal, ends.spin_a + ends.spin_b);  // tan of half the mean spin's angle
-  m.half_turn = swing + spin * middle;                      // the spin first, then the swing
+  const R spin =
+      quarter * step * dot(m.normal, ends.both_spins());  // tan of half the mean spin's angle
+  m.half_turn = swing + spin * middle;                    // the spin first, then the swing
 
   // Slip with the levers of the middle of the step: a rigid turn of the pair slips by exactly
   // nothing.
   const R bend = dot(swing, swing);
   const Vec3Of<R> lever = (1.0 - bend * (1.0 - bend)) * middle;  // (old + new normal) / 2
-  const Vec3Of<R> sliding = dv - cross(m.arm_b * ends.spin_b + m.arm_a * ends.spin_a, lever);
+  const Vec3Of<R> sliding = dv - cross(ends.by_arms(m.arm_a, m.arm_b), lever);
   m.slip = step * m.tangential(sliding);
-  m.turn = step * (ends.spin_b - ends.spin_a);
+  m.turn = step * ends.turning();
   m.turn_scale = turn_scale(m.half_turn);
   m.time = step;
   return m;

@@ -1,7 +1,7 @@
 #pragma once
 // The falling branch in tension that concrete links and the steel-concrete interface share.
 
-#include "math/pack.hpp"
+#include "math/single.hpp"
 
 namespace breccia::dem {
 
@@ -30,16 +30,16 @@ template <class R>
 struct TensionSoftening {
   R stiffness;              ///< K  [N/m]
   R strength;               ///< F_t  [N]
-  double softening;         ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
+  ConstantOf<R> softening;  ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
   bool ends_given = false;  ///< whether u_2 is given, which rules instead of zeta
   R last = {};              ///< u_2 > u_1, if given  [m]
   SofteningKnee knee = {};
 
   BR_HD R onset() const { return strength / stiffness; }
-  BR_HD R rupture() const { return ends_given ? last : onset() * (1.0 + softening); }
+  BR_HD R rupture() const { return ends_given ? last : onset() * (ConstantOf<R>(1) + softening); }
   /// K u_2  [N]
   BR_HD R elastic_at_rupture() const {
-    return ends_given ? last * stiffness : strength * (1.0 + softening);
+    return ends_given ? last * stiffness : strength * (ConstantOf<R>(1) + softening);
   }
 
   /// Whether an opening is surely below u_1, without a division: nothing is damaged or spent.
@@ -75,7 +75,8 @@ struct TensionSoftening {
   /// 1 / zeta
   BR_HD R inverse() const {
     if (ends_given) return strength / (last * stiffness - strength);
-    return constant<R>(softening > 1e-12 ? 1.0 / softening : 1e12);
+    return constant<R>(softening > ConstantOf<R>(1e-12) ? ConstantOf<R>(1) / softening
+                                                        : ConstantOf<R>(1e12));
   }
 };
 

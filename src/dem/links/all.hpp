@@ -13,6 +13,7 @@ namespace breccia::dem {
 #define BR_EACH_LINK_KERNEL(X)  \
   X(ConcreteLinkForces<double>) \
   X(ConcreteLinkForces<float>)  \
+  X(ConcreteLinkForces<Single>) \
   X(SteelLinkForces)            \
   X(InterfaceLinkForces)        \
   X(ParallelBondForces)         \

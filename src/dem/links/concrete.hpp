@@ -1,6 +1,7 @@
 #pragma once
 // Cohesive links of concrete: arrays, forces, energies.
 
+#include "dem/lanes/single_ends.hpp"
 #include "dem/laws/concrete_link.hpp"
 #include "dem/links/link_set.hpp"
 #include "math/constants.hpp"
@@ -15,6 +16,22 @@ struct LinkHistory {
   Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]  (pairs)
   PlanesOf<Number> shear;   ///< F_s on b  [N]  (pairs)
   PlanesOf<Number> moment;  ///< M on b  [N m]  (pairs)
+};
+
+/// Laws of the groups, and with constants in single precision for links that compute so.
+template <>
+struct GroupLaws<ConcreteLink> {
+  Buffer<ConcreteLink> laws;
+  Buffer<ConcreteLinkOf<float>> in_single;
+  Buffer<Index> ends;  ///< as GroupLaws
+
+  template <class Form>
+  const Buffer<Form>& as() const {
+    if constexpr (std::is_same_v<Form, ConcreteLink>)
+      return laws;
+    else
+      return in_single;
+  }
 };
 
 /// Cohesive links. Never removed: a broken one answers as the contact that is left of it.
@@ -79,21 +96,25 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
 using ConcreteLinks = LinkArrays<ConcreteLink>;
 
 /// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
-/// @tparam Number   what the links' history and actions are stored in
+/// @tparam Number   what the links' history and actions are stored in, and Single, too, what they
+///                  are computed in
 /// @tparam Actions  where actions go
-template <class Number, class Actions = View<PairForceOf<Number>>>
+template <class Number, class Actions = View<PairForceOf<StoredAs<Number>>>>
 struct ConcreteLinkForces {
   static constexpr const char* name = "dem.concrete_links";
+  static constexpr bool swept = ConcreteLinks::swept;
   static constexpr int least_blocks = sizeof(Number) == sizeof(double) ? 4 : 0;  // 128 registers
-  using Law = ConcreteLink;
+  using Stores = StoredAs<Number>;
+  using Item = ComputedIn<Number>;
+  using Law = ConcreteLinkOf<ConstantOf<Item>>;
   Law law;
   double dt;  ///< the step that moved the elements to where they are  [s]
   ElementsView elements;
   View<const Index> a, b;
   View<double> length;
   View<const double> stiffness, area;
-  View<Number> opening;
-  PlanesView<Number> shear, moment;
+  View<Stores> opening;
+  PlanesView<Stores> shear, moment;
   View<double> slid, yielded, broke, rate;
   Actions actions;
   Index first_action;  ///< action of link 0
@@ -102,7 +123,8 @@ struct ConcreteLinkForces {
   template <class R>
   struct Loaded {
     Indices<R> a, b;
-    R length, stiffness, area;
+    Wide<R> length;
+    R stiffness, area;
     LinkState<R> state;
     LinkPair<R> ends;
   };
@@ -110,14 +132,17 @@ struct ConcreteLinkForces {
   BR_HD void load_early(Index i, Loaded<R>& loaded) const {
     loaded.a = load_indices_now<R>(a, i);
     loaded.b = load_indices_now<R>(b, i);
-    loaded.length = load_now<R>(length, i);
+    loaded.length = load_wide_now<R>(length, i);
     loaded.stiffness = load_now<R>(stiffness, i);
     loaded.area = load_now<R>(area, i);
     loaded.state = {load_now<R>(opening, i), load_now<R>(shear, i), load_now<R>(moment, i)};
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
-    loaded.ends = load_pair<R>(elements.state, loaded.a, loaded.b);
+    if constexpr (is_single<R>)
+      loaded.ends = load_single_pair(elements.state, loaded.a, loaded.b, loaded.length);
+    else
+      loaded.ends = load_pair<R>(elements.state, loaded.a, loaded.b);
   }
   template <class R>
   BR_HD void update(Index i, const Loaded<R>& loaded) const {
@@ -125,12 +150,9 @@ struct ConcreteLinkForces {
   }
   /// @tparam parts  those that `by` may have
   template <ConcreteParts parts = concrete_all, class R>
-  BR_HD void update(const ConcreteLink& by, Index i, const Loaded<R>& loaded) const {
-    const R &radius_a = loaded.ends.radius_a, &radius_b = loaded.ends.radius_b;
-    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, radius_a - radius_b, dt);
-    const R touching = radius_a + radius_b;
-    const LinkConstants<R> link{loaded.length, loaded.stiffness, loaded.area, 0.5 * touching,
-                                touching};
+  BR_HD void update(const Law& by, Index i, const Loaded<R>& loaded) const {
+    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, loaded.ends.difference(), dt);
+    const LinkConstants<R> link = constants(loaded, motion, loaded.ends.touching());
     LinkState<R> state = loaded.state;
     if (by.template rated<parts>()) state.rate = load<R>(rate, i);
     const LinkResponse<R> r = by.template response<parts>(link, motion, state);
@@ -145,7 +167,7 @@ struct ConcreteLinkForces {
     store(shear, i, state.shear);
     store(moment, i, state.moment);
     if (by.template rated<parts>()) store(rate, i, state.rate);
-    if (any(r.shortened != 0.0)) store(length, i, link.length - r.shortened);
+    if (any(r.shortened != 0.0)) add_to(length, i, -r.shortened);
     if (any(r.slid != 0.0)) book(actions, slid, i, r.slid);
     if (any(r.yielded != 0.0)) book(actions, yielded, i, r.yielded);
     if (any(r.broke != 0.0)) book(actions, broke, i, r.broke);
@@ -159,14 +181,29 @@ struct ConcreteLinkForces {
     dt = now.last_dt;
     step = now.step;
   }
-  BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
+  BR_WHOLE BR_HD void operator()(Index i) const { run_at<Item>(*this, i); }
+
+ private:
+  template <class R>
+  BR_HD LinkConstants<R> constants(const Loaded<R>& loaded, const PairMotion<R>& motion,
+                                   const R& touching) const {
+    if constexpr (is_single<R>) {
+      LinkConstants<R> link{narrowed(loaded.length), loaded.stiffness, loaded.area, 0.5 * touching,
+                            touching};
+      link.stretch = loaded.ends.excess / (motion.distance + link.length);
+      link.chance = chance_of(motion.distance, step);
+      return link;
+    } else {
+      return {loaded.length, loaded.stiffness, loaded.area, 0.5 * touching, touching};
+    }
+  }
 };
 
 template <class Number>
 ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, const LinkSpace& in,
-                                     ActionsOf<Number>& actions) {
-  LinkHistory<Number>& kept = c.kept.as<Number>();
-  return {law,
+                                     ActionsOf<StoredAs<Number>>& actions) {
+  LinkHistory<StoredAs<Number>>& kept = c.kept.as<Number>();
+  return {law.as<ConstantOf<ComputedIn<Number>>>(),
           in.dt,
           in.elements,
           c.a.view(),

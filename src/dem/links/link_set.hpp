@@ -74,6 +74,12 @@ template <class Law>
 struct GroupLaws {
   Buffer<Law> laws;
   Buffer<Index> ends;  ///< of each group; equal to the one before where a group has no link here
+
+  template <class Form>
+  const Buffer<Law>& as() const {
+    static_assert(std::is_same_v<Form, Law>);
+    return laws;
+  }
 };
 
 /// The group of link i: the first that ends beyond it.

@@ -32,14 +32,14 @@ struct AddLinks {
   /// Links [from, to); action 0 is of link `from`.
   template <class Number>
   void operator()(const ConcreteLinkForces<Number>& links, Index from, Index to,
-                  const PairForceOf<Number>* actions) const {
+                  const PairForceOf<StoredAs<Number>>* actions) const {
     for (Index i = from; i < to;) {
       const Index a = links.a[i];
       SixSums as_a = sums[a].as_a;
       StiffnessSums stiffness_a = sums[a].stiffness_a;
       fetch(std::min(a + reach, sums.size - 1), links.elements.state);
       for (; i < to && links.a[i] == a; ++i) {
-        const PairForceOf<Number>& action = actions[i - from];
+        const PairForceOf<StoredAs<Number>>& action = actions[i - from];
         as_a.add(action.numbers);
         stiffness_a.add(action.stiffness);
         const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];

@@ -67,8 +67,9 @@ struct Grouped {
   View<const Index> ends;  ///< of each group
   View<const Law> laws;
 
-  Grouped(const Kernel& all, const GroupLaws<Law>& groups)
-      : kernel(all), ends(groups.ends.view()), laws(groups.laws.view()) {}
+  template <class Groups>
+  Grouped(const Kernel& all, const Groups& groups)
+      : kernel(all), ends(groups.ends.view()), laws(groups.template as<Law>().view()) {}
   struct Loaded {
     typename LoadedBy<Kernel>::Loaded link;
     Index group;
@@ -97,7 +98,7 @@ class LaunchedForces {
 
   /// All links and contacts in one launch.
   void pair_forces(World& w) const {
-    with_number(w.exec.precision, [&](auto number) { pair_forces<decltype(number)>(w); });
+    with_arithmetic(w.exec.precision, [&](auto number) { pair_forces<decltype(number)>(w); });
   }
   void sum_forces(World& w) const {
     if (w.ldpm.size() > 0)

@@ -37,7 +37,7 @@ void run_group(const World& w, const LinkGroup<Law>& group, const Kernel& kernel
 /// foresee.
 template <class Number>
 void fetch(const ConcreteLinkForces<Number>& links, Index from, Index to) {
-  const View<Number>&shear = links.shear.items, &moment = links.moment.items;
+  const auto &shear = links.shear.items, &moment = links.moment.items;
   const Index plane = links.shear.stride;
   for (Index i = from; i < to; i += 8) {
     __builtin_prefetch(links.length.data + i);
@@ -58,7 +58,7 @@ template <class Number>
 void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index end,
                const AddLinks& add) {
   constexpr Index portion = 64;
-  alignas(64) PairForceOf<Number> actions[portion];
+  alignas(64) PairForceOf<StoredAs<Number>> actions[portion];
   links.actions.data = actions;
   links.actions.size = portion;
   for (Index from = begin; from < end;) {
@@ -206,7 +206,8 @@ void HostRun::pair_forces(World& w) const {
 
 void HostRun::sum_forces(World& w) const {
   const StageTime timed(w.exec, "link_forces");
-  with_number(w.exec.precision, [&w](auto number) { link_forces_and_sums<decltype(number)>(w); });
+  with_arithmetic(w.exec.precision,
+                  [&w](auto number) { link_forces_and_sums<decltype(number)>(w); });
 }
 
 }  // namespace breccia::dem

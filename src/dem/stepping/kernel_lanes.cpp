@@ -6,8 +6,10 @@ namespace breccia::dem {
 template <class Kernel>
 void run_packs([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
 #if defined(BR_WIDE_LANES)
-  if constexpr (LinkArrays<typename Kernel::Law>::swept)  // to where packs lie in whole cache lines
-    for (; begin < end && begin % static_cast<Index>(lanes) != 0; ++begin) kernel(begin);
+  if constexpr (requires { Kernel::swept; })  // to where packs lie in whole cache lines
+    for (const Index width = static_cast<Index>(lanes) * (is_single<ItemOf<Kernel>> ? 2 : 1);
+         begin < end && begin % width != 0; ++begin)
+      kernel(begin);
 #endif
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }

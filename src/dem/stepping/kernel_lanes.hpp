@@ -26,6 +26,7 @@ void run_adding(Lanes lanes, const AddLinks& add, const Links& links, Index from
 #define BR_EACH_ADDED_KERNEL(X)         \
   X(ConcreteLinkForces<double>, double) \
   X(ConcreteLinkForces<float>, float)   \
+  X(ConcreteLinkForces<Single>, float)  \
   X(LdpmEdgeForces, double)
 
 /// How far a kernel came, and whether an element on the way has used its margin up.

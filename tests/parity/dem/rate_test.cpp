@@ -93,7 +93,7 @@ TEST(RateBits, are_the_same_on_ranks) {
 
 TEST(RateBits, are_the_same_across_a_checkpoint) {
   const ScratchFolder folder;
-  for (const char* precision : {"double", "mixed"}) {
+  for (const char* precision : {"double", "mixed", "single"}) {
     const dem::Config in = config({std::string("precision=") + precision});
     const Exec exec = in_precision({}, in.precision);
     const auto whole = make_method(in, model(), exec), before = make_method(in, model(), exec);

@@ -120,42 +120,48 @@ TEST(SameBits, across_a_checkpoint_on_other_threads) {
   EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
 }
 
-/// The whole impact in mixed precision.
-std::uint64_t mixed_hash(int threads, Lanes lanes, Space space = Space::host) {
+/// The whole impact with numbers stored, or computed, too, in single precision.
+std::uint64_t hash_in(Precision precision, int threads, Lanes lanes, Space space = Space::host) {
   Exec exec;
   exec.threads = threads;
   exec.space = space;
-  exec.precision = Precision::mixed;
+  exec.precision = precision;
   dem::World w = dem::make_world(small_config(), small_model(), exec);
   w.lanes = std::min(lanes, widest_lanes());
   EXPECT_EQ(w.concrete.kept.in_double.opening.size(), 0);
   return hash_after(std::move(w));
 }
 
-TEST(SameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space) {
-  const std::uint64_t expected = mixed_hash(1, Lanes::one);
-  EXPECT_NE(expected, reference());
-  EXPECT_EQ(mixed_hash(1, Lanes::four), expected);
-  EXPECT_EQ(mixed_hash(1, Lanes::eight), expected);
-  EXPECT_EQ(mixed_hash(3, Lanes::eight), expected);
-  EXPECT_EQ(mixed_hash(2, Lanes::eight, Space::shadow), expected);
+TEST(SameBits, in_mixed_and_single_precision_for_any_threads_width_of_vector_and_space) {
+  std::uint64_t other = reference();
+  for (const Precision precision : {Precision::mixed, Precision::single}) {
+    const std::uint64_t expected = hash_in(precision, 1, Lanes::one);
+    EXPECT_NE(expected, other);
+    other = expected;
+    EXPECT_EQ(hash_in(precision, 1, Lanes::four), expected);
+    EXPECT_EQ(hash_in(precision, 1, Lanes::eight), expected);
+    EXPECT_EQ(hash_in(precision, 3, Lanes::eight), expected);
+    EXPECT_EQ(hash_in(precision, 2, Lanes::eight, Space::shadow), expected);
+  }
 }
 
-TEST(SameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
-  const ScratchFolder folder;
-  const dem::Config config = small_config({"precision=mixed"});
-  const auto before = make_method(config, small_model(), {});
-  for (int i = 0; i < 500; ++i) before->advance({});
-  CheckpointWriter writer;
-  before->save(writer);
-  writer.write(folder / "state.br");
-  for (int i = 0; i < 200; ++i) before->advance({});
-  const CheckpointReader state(folder / "state.br");
-  const auto after = make_method(config, small_model(), {});
-  after->load(&state);
-  for (int i = 0; i < 200; ++i) after->advance({});
-  EXPECT_EQ(after->state_hash(), before->state_hash());
-  EXPECT_THROW(make_method(small_config(), small_model(), {})->load(&state), CheckpointError);
+TEST(SameBits, in_mixed_and_single_precision_across_a_checkpoint_that_others_refuse) {
+  for (const char* precision : {"mixed", "single"}) {
+    const ScratchFolder folder;
+    const dem::Config config = small_config({std::string("precision=") + precision});
+    const auto before = make_method(config, small_model(), {});
+    for (int i = 0; i < 500; ++i) before->advance({});
+    CheckpointWriter writer;
+    before->save(writer);
+    writer.write(folder / "state.br");
+    for (int i = 0; i < 200; ++i) before->advance({});
+    const CheckpointReader state(folder / "state.br");
+    const auto after = make_method(config, small_model(), {});
+    after->load(&state);
+    for (int i = 0; i < 200; ++i) after->advance({});
+    EXPECT_EQ(after->state_hash(), before->state_hash());
+    EXPECT_THROW(make_method(small_config(), small_model(), {})->load(&state), CheckpointError);
+  }
 }
 
 /// Concrete that is bounded under pressure writes the free length of its links, too.
@@ -163,9 +169,9 @@ TEST(SameBits, of_links_that_wear_and_crush) {
   dem::Config config = small_config();
   testing::confine(config.materials[0]);
   config.materials[0].friction_cap = 1e6;  // bounds friction from 5.7 MPa on
-  for (const Precision precision : {Precision::full, Precision::mixed}) {
-    config.materials[0].friction_bound = precision == Precision::full ? "sharp" : "smooth";
-    config.materials[0].criterion = precision == Precision::full ? "hyperbola" : "corner";
+  for (const Precision precision : {Precision::full, Precision::mixed, Precision::single}) {
+    config.materials[0].friction_bound = precision == Precision::mixed ? "smooth" : "sharp";
+    config.materials[0].criterion = precision == Precision::mixed ? "corner" : "hyperbola";
     std::uint64_t hash = 0;
     EnergyBalance energy{};
     const auto expect_same = [&](int threads, Lanes lanes, Space space) {

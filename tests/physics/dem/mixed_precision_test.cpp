@@ -2,6 +2,7 @@
 // of at most 2^-24 = 6e-8 to the nearest, 2^-23 by chance; n roundings of a history by chance are a
 // walk of sqrt(n) such steps.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@ using testing::Scene;
 using testing::state;
 
 constexpr double nearest = 0x1p-24, by_chance = 0x1p-23;
+constexpr double some = 16 * nearest;  ///< a few operations, one after the other
 
 /// Two spheres in touch, linked, each with all it does prescribed.
 Scene held_pair(const Vec3& velocity) {
@@ -43,7 +45,7 @@ TEST(MixedPrecision, feels_a_load_that_grows_by_a_billionth_of_the_strength_a_st
   const double kt = law.shear_ratio * still.concrete.stiffness.data()[0];
   const double strength = law.cohesion * pi * 1e-4, at_first = 0.6 * strength;
   const Vec3 velocity{0.0, share * strength / kt / still.next_dt, 0.0};
-  for (const Precision precision : {Precision::full, Precision::mixed}) {
+  for (const Precision precision : {Precision::full, Precision::mixed, Precision::single}) {
     World w = held_pair(velocity).world(1, precision);
     const auto shear = [&] {
       return with_number(precision, [&](auto number) {
@@ -81,7 +83,7 @@ TEST(MixedPrecision, feels_wear_of_a_billionth_of_the_rupture_a_step) {
   const double rupture = still.concrete.groups[0].law.tensile_strength * pi * 1e-4 / kn * 6.0;
   const double at_first = 0.6 * rupture, grown = share * rupture;
   const Vec3 velocity{0.0, grown / wear / still.next_dt, 0.0};
-  for (const Precision precision : {Precision::full, Precision::mixed}) {
+  for (const Precision precision : {Precision::full, Precision::mixed, Precision::single}) {
     World w = pair(velocity).world(1, precision);
     with_number(precision, [&](auto number) {
       using Number = decltype(number);
@@ -124,7 +126,11 @@ Pulled pulled_apart(Precision precision) {
 }
 TEST(MixedPrecision, breaks_a_link_at_its_strength_and_energy) {
   const Pulled full = pulled_apart(Precision::full), mixed = pulled_apart(Precision::mixed);
+  const Pulled single = pulled_apart(Precision::single);
   EXPECT_NEAR(full.peak, full.strength, 1e-2 * full.strength);  // by the length of a step
+  EXPECT_NEAR(single.peak, full.peak, some * full.peak);
+  EXPECT_NEAR(single.fracture, full.fracture, some * full.fracture);
+  EXPECT_NEAR(single.work, full.work, some * full.work);
   EXPECT_NEAR(mixed.peak, full.peak, nearest * full.peak);
   EXPECT_EQ(mixed.fracture, full.fracture);
   EXPECT_NEAR(mixed.fracture, mixed.toughness, 1e-9 * mixed.toughness);
@@ -133,8 +139,8 @@ TEST(MixedPrecision, breaks_a_link_at_its_strength_and_energy) {
 
 TEST(MixedPrecision, bends_a_cantilever_as_double_does) {
   constexpr int links = 10, steps = 20'000;
-  double stiffness[2];
-  for (const Precision precision : {Precision::full, Precision::mixed}) {
+  double stiffness[3];
+  for (const Precision precision : {Precision::full, Precision::mixed, Precision::single}) {
     Scene s;
     MaterialConfig& m = s.material("c", "concrete", 30e9, 0.2, 2500.0);
     m.tensile_strength = m.cohesion = 1e15;
@@ -152,10 +158,11 @@ TEST(MixedPrecision, bends_a_cantilever_as_double_does) {
     while (state(w, links).position.z < 1e-5 * x) step(w);
     w.motions.data()[0].velocity = {};
     for (int i = 0; i < steps; ++i) step(w);
-    stiffness[precision == Precision::mixed ? 1 : 0] =
+    stiffness[static_cast<int>(precision)] =
         -w.elements.force.data()[links].z / state(w, links).position.z;
   }
   EXPECT_NEAR(stiffness[1] / stiffness[0], 1.0, std::sqrt(steps) * by_chance);
+  EXPECT_NEAR(stiffness[2] / stiffness[0], 1.0, std::sqrt(steps) * by_chance);
 }
 
 /// A block of linked spheres that flies, turns and rings.
@@ -181,42 +188,47 @@ Scene block(int side, double speed) {
 
 TEST(MixedPrecision, keeps_momentum_as_double_does_and_turns_by_roundings_only) {
   constexpr int steps = 4000;
-  Scene s = block(6, 10.0);
-  s.config.time.safety = 0.3;
-  World w = s.world(1, Precision::mixed);
-  double scale = 0.0;
-  for (Index e = 0; e < w.elements.size(); ++e)
-    scale += w.elements.mass.data()[e] * norm(state(w, e).velocity);
-  step(w);
-  const Momentum start = momentum(w);
-  double torques = 0.0;  // what all links together round, in a step, at most
-  for (int i = 0; i < steps; ++i) {
+  for (const Precision precision : {Precision::mixed, Precision::single}) {
+    Scene s = block(6, 10.0);
+    s.config.time.safety = 0.3;
+    World w = s.world(1, precision);
+    double scale = 0.0;
+    for (Index e = 0; e < w.elements.size(); ++e)
+      scale += w.elements.mass.data()[e] * norm(state(w, e).velocity);
     step(w);
-    double sum = 0.0;
-    for (const Vec3& f : w.elements.force.host()) sum += 0.02 * norm(f);
-    torques = std::max(torques, w.last_dt * sum);
+    const Momentum start = momentum(w);
+    double torques = 0.0;  // what all links together round, in a step, at most
+    for (int i = 0; i < steps; ++i) {
+      step(w);
+      double sum = 0.0;
+      for (const Vec3& f : w.elements.force.host()) sum += 0.02 * norm(f);
+      torques = std::max(torques, w.last_dt * sum);
+    }
+    const Momentum end = momentum(w);
+    EXPECT_GT(count(w).broken_of(LinkKind::concrete), 100);
+    EXPECT_LT(norm(end.linear - start.linear), 1e-11 * scale);  // both ends get the same number
+    EXPECT_LT(norm(end.angular - start.angular), steps * nearest * torques);
+    EXPECT_GT(norm(end.angular - start.angular), 0.0);
   }
-  const Momentum end = momentum(w);
-  EXPECT_GT(count(w).broken_of(LinkKind::concrete), 100);
-  EXPECT_LT(norm(end.linear - start.linear), 1e-11 * scale);  // both ends get the same number
-  EXPECT_LT(norm(end.angular - start.angular), steps * nearest * torques);
-  EXPECT_GT(norm(end.angular - start.angular), 0.0);
 }
 
 TEST(MixedPrecision, keeps_the_energy_of_an_elastic_block) {
   constexpr int steps = 20'000;
-  double drift[2] = {};
-  for (const Precision precision : {Precision::full, Precision::mixed}) {
+  double drift[3] = {};
+  for (const Precision precision : {Precision::full, Precision::mixed, Precision::single}) {
     Scene s = block(5, 0.01);
     s.config.time.safety = 0.1;
     s.config.materials[0].rolling_limit = 1e9;
     World w = s.world(1, precision);
     const double start = balance(w).start;
     for (int i = 0; i < steps; ++i) step(w);
-    drift[precision == Precision::mixed ? 1 : 0] = std::fabs(balance(w).missing()) / start;
+    drift[static_cast<int>(precision)] = std::fabs(balance(w).missing()) / start;
   }
   EXPECT_LT(drift[0], 1e-5);
   EXPECT_LT(drift[1], drift[0] + std::sqrt(steps) * by_chance);
+  EXPECT_LT(drift[2], drift[0] + std::sqrt(steps) * by_chance);
+  RecordProperty("mixed", fmt::format("{:.3g}", drift[1]));
+  RecordProperty("single", fmt::format("{:.3g}", drift[2]));
 }
 
 TEST(MixedPrecision, forces_of_a_breaking_slab_differ_by_less_than_3e_6_after_a_step) {
@@ -225,32 +237,35 @@ TEST(MixedPrecision, forces_of_a_breaking_slab_differ_by_less_than_3e_6_after_a_
   World full = make_world(config, build_model(config, ""), {});
   for (int i = 0; i < 600; ++i) step(full);
   ASSERT_GT(count(full).broken_of(LinkKind::concrete), 1000);
-  World mixed = full;
-  mixed.exec.precision = mixed.concrete.precision = Precision::mixed;
-  const LinkHistory<double>& kept = full.concrete.kept.in_double;
-  LinkHistory<float>& rounded = mixed.concrete.kept.in_single;
-  mixed.concrete.kept.in_double = LinkHistory<double>();
-  rounded.opening.resize(kept.opening.size());
-  rounded.shear.resize(kept.opening.size());
-  rounded.moment.resize(kept.opening.size());
-  for (Index i = 0; i < kept.opening.size(); ++i) {
-    rounded.opening.data()[i] = static_cast<float>(kept.opening.data()[i]);
-    rounded.shear.view().store(i, kept.shear.view()[i]);
-    rounded.moment.view().store(i, kept.moment.view()[i]);
+  for (const Precision precision : {Precision::mixed, Precision::single}) {
+    World mixed = full;
+    mixed.exec.precision = mixed.concrete.precision = precision;
+    const LinkHistory<double>& kept = full.concrete.kept.in_double;
+    LinkHistory<float>& rounded = mixed.concrete.kept.in_single;
+    mixed.concrete.kept.in_double = LinkHistory<double>();
+    rounded.opening.resize(kept.opening.size());
+    rounded.shear.resize(kept.opening.size());
+    rounded.moment.resize(kept.opening.size());
+    for (Index i = 0; i < kept.opening.size(); ++i) {
+      rounded.opening.data()[i] = static_cast<float>(kept.opening.data()[i]);
+      rounded.shear.view().store(i, kept.shear.view()[i]);
+      rounded.moment.view().store(i, kept.moment.view()[i]);
+    }
+    World after = full;
+    step(after);
+    step(mixed);
+    std::vector<double> errors;
+    for (Index e = 0; e < after.elements.size(); ++e) {
+      const Vec3 f = after.elements.force.data()[e];
+      if (norm(f) > 0.0) errors.push_back(norm(mixed.elements.force.data()[e] - f) / norm(f));
+    }
+    std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
+                     errors.end());
+    const double median = errors[errors.size() / 2];
+    EXPECT_LT(median, 3e-6);
+    EXPECT_GT(median, 1e-9);
+    RecordProperty(word_of(precision), fmt::format("{:.3g}", median));
   }
-  step(full);
-  step(mixed);
-  std::vector<double> errors;
-  for (Index e = 0; e < full.elements.size(); ++e) {
-    const Vec3 f = full.elements.force.data()[e];
-    if (norm(f) > 0.0) errors.push_back(norm(mixed.elements.force.data()[e] - f) / norm(f));
-  }
-  std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
-                   errors.end());
-  const double median = errors[errors.size() / 2];
-  EXPECT_LT(median, 3e-6);
-  EXPECT_GT(median, 1e-9);
-  RecordProperty("median", std::to_string(1e9 * median));
 }
 
 }  // namespace dem_mixed_precision_test

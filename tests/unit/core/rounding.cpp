@@ -44,5 +44,43 @@ TEST(Rounding, draws_for_the_components_of_a_vector_apart) {
   EXPECT_NEAR(alike, 0.5 * draws, draws / 64.0 + 5.0 * std::sqrt(0.25 * draws));
 }
 
+TEST(Rounding, adds_in_single_precision_to_one_of_two_neighbours_and_right_on_average) {
+  constexpr int draws = 100'000;
+  const float low = 0.1F;
+  const double step = std::ldexp(1.0, -27);  // last bit of 0.1
+  for (const double share : {0.0005, 0.03, 0.25, 0.5, 0.9, 1.3})
+    for (const float sign : {1.0F, -1.0F}) {
+      const Single more(sign * static_cast<float>(share * step));
+      const int below = static_cast<int>(share);
+      int up = 0;
+      for (std::int64_t count = 0; count < draws; ++count) {
+        const auto chance = chance_of(Single(sign * low), count);
+        const double sum =
+            sign * sum_by(chance, static_cast<int>(count % 32), Single(sign * low), more).v;
+        const double steps = (sum - low) / step;
+        ASSERT_TRUE(steps == below || steps == below + 1) << steps;
+        up += steps > below ? 1 : 0;
+      }
+      const double part = share - below;
+      EXPECT_NEAR(up, part * draws, 5.0 * std::sqrt(part * (1.0 - part) * draws)) << share;
+    }
+}
+
+TEST(Rounding, a_sum_in_single_precision_with_nothing_stays) {
+  for (const float number : {0.0F, 0.1F, -3.7F, 16777215.0F, 1.1e-30F, -7e20F})
+    for (std::int64_t count = 0; count < 1000; ++count)
+      EXPECT_EQ(sum_by(chance_of(Single(0.3F), count), 3, Single(number), Single(0.0F)).v, number);
+}
+
+TEST(Rounding, steps_far_below_the_last_bit_add_up_in_single_precision) {
+  constexpr int steps = 1'000'000;
+  Single sum(0.6F);
+  const Single step(1e-9F);  // a sixtieth of the last bit
+  for (std::int64_t count = 0; count < steps; ++count)
+    sum = sum_by(chance_of(sum, count), 0, sum, step);
+  const double bit = std::ldexp(1.0, -24);
+  EXPECT_NEAR(sum.v, 0.6 + steps * 1e-9, 5.0 * std::sqrt(steps * 1e-9 * bit));
+}
+
 }  // namespace rounding_test
 }  // namespace breccia

@@ -50,6 +50,13 @@ TEST_F(Program, RefusesConstantsThatLeaveNoTimeStep) {
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
+TEST_F(Program, RefusesToComputeTrianglesInSinglePrecision) {
+  replace_file(path("plate.toml"), "precision = \"single\"\n" + torn_plate);
+  EXPECT_EQ(run("check " + path("plate.toml")), 2);
+  EXPECT_NE(output().find("allowed here are double, mixed"), std::string::npos) << output();
+  EXPECT_EQ(run("run " + path("plate.toml") + " --steps 9 -o " + path("out")), 2);
+}
+
 TEST_F(Program, NamesStepTimeAndBodyWhereNumbersGoWrong) {
   replace_file(path("plate.toml"), torn_plate);
   EXPECT_EQ(run("run " + path("plate.toml") + " -o " + path("out") +

@@ -290,6 +290,13 @@ TEST_F(Program, TellsThePrecisionAndRefusesAStateOfAnother) {
             7);
   EXPECT_NE(output().find("precision = \"mixed\""), std::string::npos) << output();
   EXPECT_EQ(run("resume " + path("mixed")), 0) << output();
+  EXPECT_EQ(run("run " + path("balls.toml") + " --set precision=single --restart " + checkpoint +
+                " -o " + path("other")),
+            7);
+  ASSERT_EQ(
+      run("run " + path("balls.toml") + " --set precision=single --steps 9 -o " + path("single")),
+      0);
+  EXPECT_NE(output().find("single precision"), std::string::npos) << output();
 }
 
 TEST_F(Program, RunsAPreparedModelToTheStateOfItsCase) {
