@@ -4,6 +4,7 @@
 
 #include "confined_concrete.hpp"
 #include "dem/observe.hpp"
+#include "domain/simulated_ranks.hpp"
 #include "exec/error.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
@@ -161,6 +162,23 @@ TEST(SameBits, in_mixed_and_single_precision_across_a_checkpoint_that_others_ref
     for (int i = 0; i < 200; ++i) after->advance({});
     EXPECT_EQ(after->state_hash(), before->state_hash());
     EXPECT_THROW(make_method(small_config(), small_model(), {})->load(&state), CheckpointError);
+  }
+}
+
+TEST(SameBits, in_mixed_and_single_precision_on_ranks) {
+  constexpr std::int64_t steps = 300;
+  for (const char* precision : {"mixed", "single"}) {
+    const dem::Config config = small_config({std::string("precision=") + precision});
+    const auto alone = make_method(config, small_model(), {});
+    while (alone->steps() < steps) alone->advance({1e300, steps});
+    const std::uint64_t hash = alone->state_hash();
+    simulate_ranks(3, 5, [&](Communicator& ranks) {
+      const auto part = make_method(config, small_model(), {}, &ranks);
+      while (part->steps() < steps) part->advance({1e300, steps});
+      const std::uint64_t together = part->state_hash();
+      if (ranks.rank() != 0) return;
+      EXPECT_EQ(together, hash) << precision;
+    });
   }
 }
 
