@@ -36,7 +36,7 @@ concept HasSlow = requires(const Kernel& kernel) {
   kernel.slow(Index{});
 };
 
-/// What a kernel computes one item in: its member Item, else double.
+/// The type of one item's numbers in a kernel: its member Item, else double.
 template <class Kernel>
 struct ItemType {
   using type = double;

@@ -148,11 +148,10 @@ struct TypesOf<SinglePack> {
   using Signed = std::int32_t __attribute__((vector_size(single_bytes)));
 };
 #if defined(__AVX512F__)
-/// Number k of rows 0, 1, ... of eight numbers becomes column k.
-inline void columns_of(const __m256 (&rows)[16], SinglePack (&columns)[8]) {
-  __m512 r[8], pairs[8], quads[8];
-  for (int k = 0; k < 8; ++k)  // rows k and k + 8
-    r[k] = _mm512_insertf32x8(_mm512_castps256_ps512(rows[k]), rows[k + 8], 1);
+/// In each lane of four numbers: number j, then number 4 + j, and so on, of rows 0 to 3 in
+/// quads[j], of rows 4 to 7 in quads[4 + j].
+inline void interleave(const __m512 (&r)[8], __m512 (&quads)[8]) {
+  __m512 pairs[8];
   for (int k = 0; k < 8; k += 2) {
     pairs[k] = _mm512_unpacklo_ps(r[k], r[k + 1]);
     pairs[k + 1] = _mm512_unpackhi_ps(r[k], r[k + 1]);
@@ -162,6 +161,13 @@ inline void columns_of(const __m256 (&rows)[16], SinglePack (&columns)[8]) {
       quads[k + 2 * j] = _mm512_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0x44);
       quads[k + 2 * j + 1] = _mm512_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0xee);
     }
+}
+/// Number k of rows 0, 1, ... of eight numbers becomes column k.
+inline void columns_of(const __m256 (&rows)[16], SinglePack (&columns)[8]) {
+  __m512 r[8], quads[8];
+  for (int k = 0; k < 8; ++k)  // rows k and k + 8
+    r[k] = _mm512_insertf32x8(_mm512_castps256_ps512(rows[k]), rows[k + 8], 1);
+  interleave(r, quads);
   // quads[j]: numbers j, then 4 + j, of rows 0 to 3, then of rows 8 to 11; quads[4 + j] of the rest
   const __m512i low = _mm512_setr_epi32(0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26, 27);
   const __m512i high =
@@ -174,16 +180,9 @@ inline void columns_of(const __m256 (&rows)[16], SinglePack (&columns)[8]) {
 /// Rows of nine numbers each, from columns; to[stride k]: row k.
 template <int stride>
 inline void write_rows(const SinglePack (&columns)[9], float* to) {
-  __m512 pairs[8], quads[8];
-  for (int k = 0; k < 8; k += 2) {
-    pairs[k] = _mm512_unpacklo_ps(columns[k].v, columns[k + 1].v);
-    pairs[k + 1] = _mm512_unpackhi_ps(columns[k].v, columns[k + 1].v);
-  }
-  for (int k = 0; k < 8; k += 4)
-    for (int j = 0; j < 2; ++j) {
-      quads[k + 2 * j] = _mm512_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0x44);
-      quads[k + 2 * j + 1] = _mm512_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0xee);
-    }
+  __m512 r[8], quads[8];
+  for (int k = 0; k < 8; ++k) r[k] = columns[k].v;
+  interleave(r, quads);
   const __m512i front = _mm512_setr_epi32(0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
   const __m512i back =
       _mm512_setr_epi32(8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
@@ -266,15 +265,16 @@ BR_HD inline R by_items(const R& numbers, const Function& function) {
   }
 }
 
-/// What constants of a law are kept in beside numbers of type R.
+/// The type of a law's constants beside numbers of type R.
 template <class R>
 using ConstantOf = std::conditional_t<is_single<R>, float, double>;
 
-/// What is stored of numbers that a run computes as `Number`: double, or float of float and Single.
+/// The type in memory of numbers that a run computes as `Number`: double, or float of float and
+/// Single.
 template <class Number>
 using StoredAs = std::conditional_t<std::is_same_v<Number, double>, double, float>;
 
-/// What a kernel whose links are stored as `Number` computes in: packs of it on the host.
+/// The type of numbers in a kernel whose links are stored as `Number`; packs of it on the host.
 template <class Number>
 using ComputedIn = std::conditional_t<std::is_same_v<Number, Single>, Single, double>;
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a cohesive link keeps, what it is made of and how it answers in a step.
+// State, constants and response of a cohesive link.
 
 #include "dem/laws/pair_motion.hpp"
 #include "math/rounding.hpp"

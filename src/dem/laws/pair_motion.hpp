@@ -28,7 +28,7 @@ struct PairEnds {
     return arm_b * spin_b + arm_a * spin_a;
   }
 };
-/// Likewise in single precision, where differences are taken in double before they are rounded.
+/// Both ends in single precision: differences are taken in double before they are rounded.
 template <class V>
 struct PairEnds<SingleOf<V>> {
   using R = SingleOf<V>;
@@ -66,7 +66,7 @@ struct PairMotion {
   /// rotation that brings the old normal to the new one and spins about it by the mean spin. It
   /// keeps the length.
   BR_HD Vec3Of<R> rotated_with_pair(const Vec3Of<R>& v) const { return v + change_with_pair(v); }
-  /// What that adds to the vector.
+  /// The change of the vector by it.
   BR_HD Vec3Of<R> change_with_pair(const Vec3Of<R>& v) const {
     const Vec3Of<R> w = cross(half_turn, v);
     return turn_scale * (w + cross(half_turn, w));
