@@ -93,7 +93,7 @@ TileSearchCase search_case(World& w, TilePlan& plan, Index room, std::size_t byt
 
 /// Something that a world has and tiles do not know; null: nothing.
 const char* unknown_to_tiles(const World& w) {
-  if (w.exec.precision != Precision::full) return "mixed precision";
+  if (w.exec.precision != Precision::full) return "a precision other than double";
   if (!w.walls.empty()) return "walls";
   if (!w.prescribed.motions.empty()) return "prescribed motions";
   if (w.given->search.every != 0) return "search.every";
