@@ -5,6 +5,7 @@
 
 #include "dem/setup/materials.hpp"
 #include "math/constants.hpp"
+#include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/body.hpp"
@@ -76,7 +77,7 @@ class Assembly {
   }
 
   Model& model() { return model_; }
-  const std::vector<BodyLinks>& links() const { return links_; }
+  std::vector<BodyLinks>& links() { return links_; }
 
  private:
   const MaterialConfig& material() const {
@@ -218,15 +219,33 @@ void give_boundaries(Model& model, const Config& config) {
   }
 }
 
+void refuse_bars_outside(const Config& config, const std::string& case_folder) {
+  std::vector<std::string> problems;
+  for (const BodyConfig& host : config.bodies) {
+    if (host.shape != "stl" || !prepare::has_bars(config.bodies, host)) continue;
+    const std::string path = (std::filesystem::path(case_folder) / host.file).string();
+    const auto found =
+        prepare::bars_outside(config.bodies, host, prepare::read_surface(path, host.file_unit));
+    problems.insert(problems.end(), found.begin(), found.end());
+  }
+  prepare::refuse(problems, "with the model");
+}
+
 }  // namespace
 
 dem::Model build_model(const dem::Config& config, const std::string& case_folder) {
   prepare::refuse(prepare::body_problems(config), "with the model");
 
-  Config whole = config;
-  for (BodyConfig& body : whole.bodies) body = prepare::whole_of(body, case_folder);
+  refuse_bars_outside(config, case_folder);
+  Config whole = prepare::with_whole_bodies(config, case_folder);
   Assembly assembly(whole, case_folder);
   Model& model = assembly.model();
+  for (BodyLinks& links : assembly.links())
+    if (links.kind == BodyLinks::Kind::bars) {
+      const BodyConfig& host = config.bodies[static_cast<std::size_t>(links.host)];
+      links.within = prepare::shape_within(
+          host, *prepare::item_named(config.materials, host.material), case_folder);
+    }
   prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
   prepare::link_elements(model, assembly.links(), config.links);
   prepare::link_facets(model);

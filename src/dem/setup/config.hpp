@@ -60,9 +60,8 @@ struct BarConfig {
   void each_key(Visit&& key) {
     key("mark", mark, "what messages call the bar; empty: its number");
     key("points", points, "m", any_number,
-        "points of the axis in the frame of the body (its centre is the origin), joined by "
-        "straight "
-        "lines");
+        "points of the axis in the frame of the body (its centre is the origin; of an STL body "
+        "that of the file), joined by straight lines");
     key.required("points");
     key("closed", closed, "whether the last point is joined to the first one, as of a stirrup");
     key("diameter", diameter, "m", not_negative, "bar diameter; 0: that of the rebar");

@@ -165,7 +165,6 @@ class DemBodyChecks {
     if (b.joins.empty()) return;
     require(b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder",
             ".join: boxes, spheres and cylinders are joined to, not shape {}", b.shape);
-    require(!has_bars(b), ".join: a body with bars is its own shape; leave join out");
     const std::vector<std::string>& periodic = b.pack.periodic;
     require(
         periodic.empty() || periodic.size() == 3,
@@ -191,11 +190,7 @@ class DemBodyChecks {
     }
   }
 
-  bool has_bars(const BodyConfig& b) const {
-    return std::any_of(config_.bodies.begin(), config_.bodies.end(), [&](const BodyConfig& other) {
-      return other.shape == "rebar" && other.rebar.in == b.name;
-    });
-  }
+  bool has_bars(const BodyConfig& b) const { return prepare::has_bars(config_.bodies, b); }
   void check_pack(const BodyConfig& b) {
     for (const std::string& problem : pack_problems(b)) require(false, ".pack{}", problem);
     const Vec3& cell = b.pack.cell;
@@ -267,13 +262,13 @@ class DemBodyChecks {
                 those_of(config_.bodies, [](const BodyConfig& o) { return o.shape != "rebar"; }),
                 b.rebar.in));
     if (host == nullptr) return;
-    const bool fits =
-        host->shape == "box" ||
-        (drawn && (host->shape == "sphere" || host->shape == "cylinder" || host->shape == "file"));
-    require(fits, ".rebar.in = {:?} is a body of shape {}: {}", b.rebar.in, host->shape,
-            drawn ? "bars lie in bodies of shape box, cylinder, sphere or file"
-                  : "mats of bars lie in boxes; in cylinders, spheres and files bars are drawn one "
-                    "by one ([[body.rebar.bar]])");
+    const bool fits = drawn ? is_packed(*host) || host->shape == "file"
+                            : host->shape == "box" && host->joins.empty();
+    require(fits, ".rebar.in = {:?} is a body of shape {}{}: {}", b.rebar.in, host->shape,
+            host->joins.empty() ? "" : " with joins",
+            drawn ? "bars lie in bodies of shape box, cylinder, sphere, stl or file"
+                  : "mats of bars lie in boxes; in other bodies bars are drawn one by one "
+                    "([[body.rebar.bar]])");
     if (!fits) return;
     const auto problems = bar_problems(b.rebar, *host);
     for (const std::string& problem : problems) require(false, ".rebar: {}", problem);

@@ -15,6 +15,7 @@
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/meshing/meshing.hpp"
+#include "prepare/packing/rebar.hpp"
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/surface.hpp"
 #include "prepare/shapes/wall_files.hpp"
@@ -124,8 +125,11 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
   for (const dem::BodyConfig& body : config.bodies) {
     if (body.shape == "stl")
-      files.check("body." + body.name + ".file", body.file,
-                  [&](const std::string& path) { read_surface(path, body.file_unit); });
+      files.check("body." + body.name + ".file", body.file, [&](const std::string& path) {
+        const Surface surface = read_surface(path, body.file_unit);
+        for (const std::string& problem : bars_outside(config.bodies, body, surface))
+          files.add(problem);
+      });
     for (const dem::CutConfig& cut : body.cuts)
       if (cut.shape == "stl")
         files.check("body." + body.name + ".cut", cut.file,

@@ -131,7 +131,11 @@ Candidates find_candidates(const dem::Model& m, const std::vector<BodyLinks>& bo
       for (const Candidate& c : concrete_candidates({m, members[k]}, range))
         ranged.emplace_back(c.ratio, make_link(c, body.link, body.material));
     } else if (body.kind == BodyLinks::Kind::bars) {
-      const Neighbourhood host(m, members[static_cast<std::size_t>(body.host)]);
+      std::vector<Index> around = members[static_cast<std::size_t>(body.host)];
+      if (body.within)
+        std::erase_if(
+            around, [&](Index e) { return !body.within(m.position[static_cast<std::size_t>(e)]); });
+      const Neighbourhood host(m, std::move(around));
       for (const Index s : members[k]) {
         const Index next = m.bar_next[static_cast<std::size_t>(s)];
         if (next >= 0)

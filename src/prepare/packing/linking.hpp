@@ -23,6 +23,8 @@ struct BodyLinks {
   int host = -1;                                 ///< body that the bars reinforce
   std::int16_t interface = 0;                    ///< material of the links between bars and host
   bool of_file = false;                          ///< its elements are read, not packed
+  /// Which places of the host stay: bars are bonded to elements there. Empty: all.
+  std::function<bool(const Vec3&)> within{};
 };
 
 /// The least number of interface links an element of a bar has, if its host has that many elements.

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "math/constants.hpp"
+#include "prepare/shapes/segments.hpp"
+#include "prepare/shapes/solid.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -68,22 +70,6 @@ Chain chain_along(const dem::RebarConfig& rebar, std::size_t number, int copy) {
   return chain;
 }
 
-/// The shortest way between two straight bars.
-struct Nearest {
-  double distance;  ///< of their axes  [m]
-  Vec3 at;          ///< on the first one
-};
-Nearest nearest(const Bar& p, const Bar& q) {
-  const Vec3 u = p.b - p.a, v = q.b - q.a, w = p.a - q.a;
-  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
-  const double across = uu * vv - uv * uv;
-  double s = across > 1e-12 * uu * vv ? std::clamp((uv * vw - vv * uw) / across, 0.0, 1.0) : 0.0;
-  const double t = vv > 0.0 ? std::clamp((uv * s + vw) / vv, 0.0, 1.0) : 0.0;
-  s = uu > 0.0 ? std::clamp((uv * t - uw) / uu, 0.0, 1.0) : 0.0;
-  const Vec3 at = p.a + s * u;
-  return {norm(at - (q.a + t * v)), at};
-}
-
 std::vector<std::string> mat_problems(const dem::RebarConfig& rebar, const Vec3& size) {
   std::vector<std::string> problems;
   const double d = rebar.diameter;
@@ -109,11 +95,55 @@ std::vector<std::string> mat_problems(const dem::RebarConfig& rebar, const Vec3&
   return problems;
 }
 
-std::vector<std::string> drawn_problems(const dem::RebarConfig& rebar,
-                                        const dem::BodyConfig& host) {
-  std::vector<std::string> problems;
+/// Points of a sphere of radius 1, spread evenly, and those on the axes.
+std::vector<Vec3> directions_around() {
+  constexpr int spread = 200;
+  const double turn = pi * (3.0 - std::sqrt(5.0));  // golden angle
+  std::vector<Vec3> all{{1.0, 0.0, 0.0},  {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0},
+                        {0.0, -1.0, 0.0}, {0.0, 0.0, 1.0},  {0.0, 0.0, -1.0}};
+  for (int k = 0; k < spread; ++k) {
+    const double z = 1.0 - (2.0 * k + 1.0) / spread, r = std::sqrt(1.0 - z * z);
+    all.push_back({r * std::cos(turn * k), r * std::sin(turn * k), z});
+  }
+  return all;
+}
+
+/// Of a body with joins: lines on the skin of a part, and points of its round ends, must lie within
+/// the union. To half a hundredth of the radius along the part, to two at its ends.
+PlaceOutside outside_union(const dem::BodyConfig& host) {
+  return [whole = Union(host), center = host.center, frame = frame_of(host.axis, host.across),
+          around = directions_around()](const Bar& part) -> std::optional<Vec3> {
+    constexpr int lines = 32;
+    const double r = part.radius * (1.0 - 1e-9);
+    const auto placed = [&](const Vec3& x) { return center + frame.out(x); };
+    for (const Vec3& end : {part.a, part.b})
+      for (const Vec3& d : around)
+        if (whole.parts(placed(end), placed(end + r * d))) return end;
+    const Vec3 along = part.b - part.a;
+    if (!(norm(along) > 0.0)) return {};
+    const Frame3 own = frame_of(along, {});
+    for (int k = 0; k < lines; ++k) {
+      const double angle = 2.0 * pi * k / lines;
+      const Vec3 off = r * (std::cos(angle) * own.x + std::sin(angle) * own.y);
+      if (whole.parts(placed(part.a + off), placed(part.b + off))) return 0.5 * (part.a + part.b);
+    }
+    return {};
+  };
+}
+
+PlaceOutside outside_container(const dem::BodyConfig& host) {
   const Container container = container_of(host);
-  const bool has_faces = container.volume() > 0.0;  // a file may have no box
+  if (!(container.volume() > 0.0)) return {};  // a file without a box; a surface
+  return [container](const Bar& part) -> std::optional<Vec3> {
+    for (const Vec3& end : {part.a, part.b})
+      if (container.depth(end) < part.radius * (1.0 - 1e-9)) return end;
+    return {};
+  };
+}
+
+std::vector<std::string> drawn_problems(const dem::RebarConfig& rebar,
+                                        const PlaceOutside& outside) {
+  std::vector<std::string> problems;
   for (std::size_t k = 0; k < rebar.drawn.size(); ++k) {
     const dem::BarConfig& drawn = rebar.drawn[k];
     const std::size_t least = drawn.closed ? 3 : 2;
@@ -131,16 +161,16 @@ std::vector<std::string> drawn_problems(const dem::RebarConfig& rebar,
             "{} has elements {:.3g} m apart, which overlap; spacing and its straight parts "
             "must be at least its diameter, {:.3g} m",
             chain.name, shortest, chain.diameter));
-      for (const Bar& part : chain.segments)
-        for (const Vec3& end : {part.a, part.b}) {
-          if (!has_faces || container.depth(end) >= chain.radius() * (1.0 - 1e-9)) continue;
-          problems.push_back(
-              fmt::format("{} is not inside the body at ({:.4g}, {:.4g}, {:.4g}) m of it: its axis "
-                          "must lie half "
-                          "a diameter, {:.3g} m, below the faces",
-                          chain.name, end.x, end.y, end.z, chain.radius()));
-          return problems;
-        }
+      for (const Bar& part : chain.segments) {
+        if (!outside) break;
+        const std::optional<Vec3> at = outside(part);
+        if (!at) continue;
+        problems.push_back(
+            fmt::format("{} is not inside the body at ({:.4g}, {:.4g}, {:.4g}) m of it: its axis "
+                        "must lie half a diameter, {:.3g} m, below the faces",
+                        chain.name, at->x, at->y, at->z, chain.radius()));
+        return problems;
+      }
       if (!problems.empty()) return problems;
     }
   }
@@ -154,6 +184,12 @@ std::vector<Bar> bars_through(const dem::RebarConfig& rebar, const Vec3& size) {
   add_mat(bars, rebar, size, -1.0);
   if (rebar.layers == 2) add_mat(bars, rebar, size, 1.0);
   return bars;
+}
+
+bool has_bars(const std::vector<dem::BodyConfig>& bodies, const dem::BodyConfig& host) {
+  return std::any_of(bodies.begin(), bodies.end(), [&](const dem::BodyConfig& other) {
+    return other.shape == "rebar" && other.rebar.in == host.name;
+  });
 }
 
 double Chain::area() const {
@@ -203,7 +239,26 @@ std::vector<Chain> chains_through(const dem::RebarConfig& rebar, const Vec3& siz
 }
 
 std::vector<std::string> bar_problems(const dem::RebarConfig& rebar, const dem::BodyConfig& host) {
-  return rebar.drawn.empty() ? mat_problems(rebar, host.size) : drawn_problems(rebar, host);
+  if (rebar.drawn.empty()) return mat_problems(rebar, host.size);
+  return drawn_problems(rebar, host.joins.empty() ? outside_container(host) : outside_union(host));
+}
+
+std::vector<std::string> bars_outside(const std::vector<dem::BodyConfig>& bodies,
+                                      const dem::BodyConfig& host, const Surface& surface) {
+  // Corners in a file are rounded to its digits, or to single precision.
+  const double rounding = 1e-7 * norm(surface.high() - surface.low());
+  const PlaceOutside outside = [&](const Bar& part) -> std::optional<Vec3> {
+    if (!surface.holds(part.a)) return part.a;
+    const Surface::Clearance least = surface.clearance(part.a, part.b, 2.0 * part.radius);
+    if (least.distance < part.radius * (1.0 - 1e-9) - rounding) return least.at;
+    return {};
+  };
+  std::vector<std::string> problems;
+  for (const dem::BodyConfig& body : bodies)
+    if (body.shape == "rebar" && body.rebar.in == host.name)
+      for (const std::string& problem : drawn_problems(body.rebar, outside))
+        problems.push_back(fmt::format("body.{}.rebar: {}", body.name, problem));
+  return problems;
 }
 
 std::vector<std::string> crossing_problems(const std::vector<Chain>& bars,
@@ -217,7 +272,8 @@ std::vector<std::string> crossing_problems(const std::vector<Chain>& bars,
         for (std::size_t b = same && i == j ? a + 1 : 0; b < q.segments.size(); ++b) {
           if (same && i == j && (b == a + 1 || (p.closed && a == 0 && b + 1 == q.segments.size())))
             continue;  // parts that share a corner
-          const Nearest near = nearest(p.segments[a], q.segments[b]);
+          const Bar &one = p.segments[a], &two = q.segments[b];
+          const NearestOfSegments near = nearest_of_segments(one.a, one.b, two.a, two.b);
           if (near.distance >= needed * (1.0 - 1e-9)) continue;
           return {fmt::format(
               "{} and {} come as near as {:.3g} m at ({:.4g}, {:.4g}, {:.4g}) m of the body; their "

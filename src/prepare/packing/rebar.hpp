@@ -2,11 +2,14 @@
 // Reinforcement: mats of straight bars through a box, or bars as they are drawn, each a chain of
 // elements.
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dem/setup/config.hpp"
 #include "prepare/packing/packing.hpp"
+#include "prepare/shapes/surface.hpp"
 
 namespace breccia::prepare {
 
@@ -18,6 +21,9 @@ using Bar = Capsule;
 /// Bars share the width evenly and end with round caps at the faces of the box (docs/theory.md,
 /// bars).
 std::vector<Bar> bars_through(const dem::RebarConfig& rebar, const Vec3& size);
+
+/// Whether bars reinforce a body.
+bool has_bars(const std::vector<dem::BodyConfig>& bodies, const dem::BodyConfig& host);
 
 /// A bar as a chain of elements.
 struct Chain {
@@ -44,8 +50,18 @@ std::vector<Chain> chains_through(const dem::RebarConfig& rebar, const Vec3& siz
 /// Of the steel, as its elements weigh it: area times length  [m3]
 double bars_volume(const std::vector<Chain>& chains);
 
-/// Reasons why these bars do not fit their body, one sentence each; empty: they fit.
+/// The place of the axis of a straight part at which it comes closer to the faces of its body than
+/// half its diameter, in the frame of the body; none: it lies inside.  [m]
+using PlaceOutside = std::function<std::optional<Vec3>(const Bar& part)>;
+
+/// Reasons why these bars do not fit their body, one sentence each; empty: they fit. Of a body
+/// that a surface encloses, bars_outside tells the rest.
 std::vector<std::string> bar_problems(const dem::RebarConfig& rebar, const dem::BodyConfig& host);
+
+/// Bars of a body that do not lie within the surface that encloses it, one sentence each with the
+/// path of their key.
+std::vector<std::string> bars_outside(const std::vector<dem::BodyConfig>& bodies,
+                                      const dem::BodyConfig& host, const Surface& surface);
 
 /// Where bars of one or two rebars of a body come closer than they may; one sentence at most.
 std::vector<std::string> crossing_problems(const std::vector<Chain>& bars,

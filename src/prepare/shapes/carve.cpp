@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -51,6 +52,31 @@ class Cut {
   std::optional<Surface> surface_;
 };
 
+/// The surface of a body, for places of its upright whole. Particles of LDPM lie on faces of the
+/// box around it: within, as seen here.
+class Shell {
+ public:
+  Shell(const BodyConfig& body, const dem::MaterialConfig& material, const std::string& case_folder)
+      : surface_(read_surface(path_in(case_folder, body.file), body.file_unit)),
+        center_(body.center),
+        middle_(0.5 * (surface_.low() + surface_.high())),
+        inwards_(material.law == "ldpm" ? 1e-9 : 0.0) {}
+
+  const Surface& surface() const { return surface_; }
+  bool holds(const Vec3& x) const { return surface_.holds(within(x)); }
+  bool parts(const Vec3& a, const Vec3& b) const { return surface_.parts(within(a), within(b)); }
+
+ private:
+  Vec3 within(const Vec3& x) const {
+    const Vec3 own = x - center_;
+    return own - inwards_ * (own - middle_);
+  }
+
+  Surface surface_;
+  Vec3 center_, middle_;
+  double inwards_;
+};
+
 /// Leaves the elements that are kept, and what joins them.
 void keep_only(Model& model, const std::vector<bool>& kept) {
   std::vector<Index> number(kept.size(), -1);
@@ -92,25 +118,16 @@ class Carving {
   void carve(int number) {
     const BodyConfig& body = config_.bodies[static_cast<std::size_t>(number)];
     if (!is_shaped(body)) return;
-    std::optional<Surface> surface;
-    if (body.shape == "stl")
-      surface.emplace(read_surface(path_in(folder_, body.file), body.file_unit));
     const MaterialConfig& material = *item_named(config_.materials, body.material);
-    if (surface) {
-      // Particles of LDPM lie on faces of the box around a surface: within, as seen here.
-      const Vec3 middle = 0.5 * (surface->low() + surface->high());
-      const double inwards = material.law == "ldpm" ? 1e-9 : 0.0;
-      const auto within = [&](const Vec3& x) {
-        const Vec3 own = x - body.center;
-        return own - inwards * (own - middle);
-      };
+    std::optional<Shell> shell;
+    if (body.shape == "stl") shell.emplace(body, material, folder_);
+    if (shell)
       remove(
-          number, body, [&](const Vec3& x) { return !surface->holds(within(x)); },
-          [&](const Vec3& a, const Vec3& b) { return surface->parts(within(a), within(b)); });
-    }
-    if (surface && material.fabric != "packed")
+          number, body, [&](const Vec3& x) { return !shell->holds(x); },
+          [&](const Vec3& a, const Vec3& b) { return shell->parts(a, b); });
+    if (shell && material.fabric != "packed")
       even_out(model_, number, body.center, material.fabric, [&](const Vec3& x, double reach) {
-        return std::array{surface->distance(x, reach), no_limit, no_limit};
+        return std::array{shell->surface().distance(x, reach), no_limit, no_limit};
       });
     if (body.joins.empty())
       turn(number, body);
@@ -129,6 +146,11 @@ class Carving {
 
   bool is_of(Index e, int number) const {
     return model_.group[static_cast<std::size_t>(e)] == number;
+  }
+  bool is_bar_in(Index e, const BodyConfig& body) const {
+    const auto group = static_cast<std::size_t>(model_.group[static_cast<std::size_t>(e)]);
+    const BodyConfig& of = config_.bodies[group];
+    return of.shape == "rebar" && of.rebar.in == body.name;
   }
   const Vec3& place(Index e) const { return model_.position[static_cast<std::size_t>(e)]; }
 
@@ -195,7 +217,7 @@ class Carving {
         return std::array{whole.depth(x), no_limit, no_limit};
       });
     for (Index e = 0; e < model_.size(); ++e)
-      if (is_of(e, number))
+      if (is_of(e, number) || is_bar_in(e, body))
         model_.velocity[static_cast<std::size_t>(e)] =
             body.velocity + cross(body.spin, place(e) - body.center);
   }
@@ -206,8 +228,7 @@ class Carving {
     const auto turned = [&](const Vec3& x) { return body.center + frame.out(x - body.center); };
     for (Index e = 0; e < model_.size(); ++e) {
       const auto at = static_cast<std::size_t>(e);
-      const BodyConfig& of = config_.bodies[static_cast<std::size_t>(model_.group[at])];
-      if (!is_of(e, number) && !(of.shape == "rebar" && of.rebar.in == body.name)) continue;
+      if (!is_of(e, number) && !is_bar_in(e, body)) continue;
       model_.position[at] = turned(model_.position[at]);
       model_.velocity[at] = body.velocity + cross(body.spin, model_.position[at] - body.center);
     }
@@ -254,6 +275,36 @@ BodyConfig whole_of(const BodyConfig& body, const std::string& case_folder) {
   whole.pack.count =
       static_cast<int>(std::min(std::round(body.pack.count * box / surface.volume()), 2e9));
   return whole;
+}
+
+dem::Config with_whole_bodies(const dem::Config& config, const std::string& case_folder) {
+  dem::Config whole = config;
+  for (BodyConfig& body : whole.bodies) body = whole_of(body, case_folder);
+  for (BodyConfig& bars : whole.bodies) {
+    if (bars.shape != "rebar") continue;
+    const BodyConfig& host = *item_named(config.bodies, bars.rebar.in);
+    const Vec3 moved = host.center - item_named(whole.bodies, host.name)->center;
+    if (host.shape != "stl" && host.joins.empty()) continue;
+    // The box around joined solids stands upright in the case; a surface is turned later.
+    const Frame3 frame = host.joins.empty() ? Frame3{} : frame_of(host.axis, host.across);
+    for (dem::BarConfig& bar : bars.rebar.drawn) {
+      for (Vec3& point : bar.points) point = moved + frame.out(point);
+      bar.step = frame.out(bar.step);
+    }
+  }
+  return whole;
+}
+
+std::function<bool(const Vec3&)> shape_within(const BodyConfig& body,
+                                              const dem::MaterialConfig& material,
+                                              const std::string& case_folder) {
+  if (body.shape == "stl")
+    return [shell = std::make_shared<Shell>(body, material, case_folder)](const Vec3& x) {
+      return shell->holds(x);
+    };
+  if (!body.joins.empty())
+    return [whole = Union(body)](const Vec3& x) { return whole.depth(x) > 0.0; };
+  return {};
 }
 
 void carve(Model& model, const dem::Config& config, const std::string& case_folder) {

@@ -5,6 +5,9 @@
 // lies outside of its shape goes. Its material is that of the whole, and cut faces are as rough as
 // the elements are large.
 
+#include <functional>
+#include <string>
+
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
 #include "prepare/packing/packing.hpp"
@@ -20,6 +23,15 @@ bool is_shaped(const dem::BodyConfig& body);
 /// more elements as it is larger; without turn and cuts.
 /// @throws as read_surface
 dem::BodyConfig whole_of(const dem::BodyConfig& body, const std::string& case_folder);
+
+/// A case with the upright bodies that are packed, and the bars drawn in them where they lie then.
+dem::Config with_whole_bodies(const dem::Config& config, const std::string& case_folder);
+
+/// Whether a place of the whole of an STL body, or of one with joins, lies in its shape before that
+/// is turned; empty for others.
+std::function<bool(const Vec3&)> shape_within(const dem::BodyConfig& body,
+                                              const dem::MaterialConfig& material,
+                                              const std::string& case_folder);
 
 /// Gives the bodies of a linked model their shapes: elements whose centres lie outside go, links
 /// that pass through what is cut out go, and elements that lose all their links; turned bodies take

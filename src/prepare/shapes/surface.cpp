@@ -12,6 +12,7 @@
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "math/bounds.hpp"
+#include "prepare/shapes/segments.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -98,20 +99,21 @@ double distance_to(const Triangle& t, const Vec3& p) {
   return norm(ap - vb / all * ab - vc / all * ac);
 }
 
-/// Möller and Trumbore 1997, for a segment.
-bool meets(const Triangle& t, const Vec3& from, const Vec3& to) {
+/// Where a segment meets a triangle, as a share of its length; below 0: nowhere, or in its plane
+/// (Möller and Trumbore 1997).
+double met_at(const Triangle& t, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from, e1 = t[1] - t[0], e2 = t[2] - t[0];
   const Vec3 h = cross(along, e2);
   const double det = dot(e1, h);
-  if (det == 0.0) return false;
+  if (det == 0.0) return -1.0;
   const Vec3 s = from - t[0];
   const double u = dot(s, h) / det;
-  if (u < 0.0 || u > 1.0) return false;
+  if (u < 0.0 || u > 1.0) return -1.0;
   const Vec3 q = cross(s, e1);
   const double v = dot(along, q) / det;
-  if (v < 0.0 || u + v > 1.0) return false;
+  if (v < 0.0 || u + v > 1.0) return -1.0;
   const double at = dot(e2, q) / det;
-  return at >= 0.0 && at <= 1.0;
+  return at >= 0.0 && at <= 1.0 ? at : -1.0;
 }
 
 double edge_of_cells(const std::vector<Triangle>& triangles) {
@@ -226,17 +228,46 @@ double Surface::distance(const Vec3& p, double reach) const {
   return least;
 }
 
-bool Surface::parts(const Vec3& a, const Vec3& b) const {
+template <class Visit>
+void Surface::each_near(const Vec3& a, const Vec3& b, double reach, Visit&& visit) const {
   const Vec3 middle = 0.5 * (a + b), half = 0.5 * (b - a);
-  const double reach = std::max({std::abs(half.x), std::abs(half.y), std::abs(half.z)});
-  bool hit = false;
-  near_.visit(middle, reach + widest_, [&](Index k) {
-    if (hit) return;
+  const double far =
+      std::max({std::abs(half.x), std::abs(half.y), std::abs(half.z)}) + reach + widest_;
+  near_.visit(middle, far, [&](Index k) {
     const Vec3 apart = centres_[static_cast<std::size_t>(k)] - middle;
-    const double far = reach + widest_;
     if (std::abs(apart.x) > far || std::abs(apart.y) > far || std::abs(apart.z) > far) return;
-    hit = meets(triangles_[static_cast<std::size_t>(k)], a, b);
+    visit(triangles_[static_cast<std::size_t>(k)]);
   });
+}
+
+Surface::Clearance Surface::clearance(const Vec3& a, const Vec3& b, double reach) const {
+  Clearance least{reach, a};
+  const auto lessen = [&](double distance, const Vec3& at) {
+    if (distance < least.distance) least = {distance, at};
+  };
+  // In pieces: the box around a long slanting segment holds much that is far from it.
+  const double length = norm(b - a), piece = 4.0 * (reach + widest_);
+  const int pieces = 1 + static_cast<int>(std::min(length / piece, 1e6));
+  for (int i = 0; i < pieces; ++i) {
+    const Vec3 from = a + (static_cast<double>(i) / pieces) * (b - a);
+    const Vec3 to = a + (static_cast<double>(i + 1) / pieces) * (b - a);
+    each_near(from, to, reach, [&](const Triangle& t) {
+      if (const double share = met_at(t, from, to); share >= 0.0)
+        return lessen(0.0, from + share * (to - from));
+      lessen(distance_to(t, from), from);
+      lessen(distance_to(t, to), to);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const NearestOfSegments near = nearest_of_segments(from, to, t[k], t[(k + 1) % 3]);
+        lessen(near.distance, near.at);
+      }
+    });
+  }
+  return least;
+}
+
+bool Surface::parts(const Vec3& a, const Vec3& b) const {
+  bool hit = false;
+  each_near(a, b, 0.0, [&](const Triangle& t) { hit = hit || met_at(t, a, b) >= 0.0; });
   return hit;
 }
 

@@ -26,10 +26,22 @@ class Surface {
   bool holds(const Vec3& point) const;
   /// From a point inside to the surface, or `reach` where it is farther.  [m]
   double distance(const Vec3& point, double reach) const;
+  /// Where a segment is nearest to the surface.
+  struct Clearance {
+    double distance;  ///< 0 where they meet  [m]
+    Vec3 at;          ///< of the segment  [m]
+  };
+  /// Of the segment from a to b; `reach` at a where all of it is farther.
+  Clearance clearance(const Vec3& a, const Vec3& b, double reach) const;
   /// Whether the segment from a to b meets a triangle.
   bool parts(const Vec3& a, const Vec3& b) const;
 
  private:
+  /// visit(triangle) for those whose boxes come within `reach` of the box around the segment, and
+  /// some more.
+  template <class Visit>
+  void each_near(const Vec3& a, const Vec3& b, double reach, Visit&& visit) const;
+
   std::vector<Triangle> triangles_;
   Vec3 low_{}, high_{};
   double volume_ = 0.0;

@@ -130,11 +130,11 @@ std::string problem_of(const Config& config) {
 
 TEST(Rebar, in_a_body_of_another_shape_is_refused_with_the_shapes_that_there_are) {
   Config config = beam();
-  config.bodies[0].shape = "stl";
-  config.bodies[0].file = "bone.stl";
+  config.bodies[0].shape = "element";
+  config.bodies[0].radius = 0.08;
   EXPECT_NE(
-      problem_of(config).find("rebar.in = \"beam\" is a body of shape stl: bars lie in bodies of "
-                              "shape box, cylinder, sphere or file"),
+      problem_of(config).find("rebar.in = \"beam\" is a body of shape element: bars lie in bodies "
+                              "of shape box, cylinder, sphere, stl or file"),
       std::string::npos)
       << problem_of(config);
   config.bodies[0] = box_body("beam", {}, 600, 0.5);
