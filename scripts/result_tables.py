@@ -25,6 +25,7 @@ import reinforced_tests
 import rock_experiments
 import rock_library
 import rock_tables
+import slip_wear
 import speed_tables
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -111,6 +112,7 @@ def impact(kind):
 MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambda which: library_tables.markdown(lines_of("library"), which),
           "criterion": lambda _: concrete_tables.criterion(lines_of("criterion")), "choice": lambda _: concrete_tables.choice(lines_of("choice")),
           "reinforced": lambda what: reinforced_tests.drops(lines_of("reinforced")) if what == "drops" else reinforced_tests.markdown(lines_of("reinforced"), what),
+          "slip_wear": lambda packings: slip_wear.markdown(slip_wear.with_library(lines_of("slip_wear"), lines_of("library"), lines_of("reinforced")), packings),
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
           "published": lambda test: published_tests.markdown(lines_of("published"), test),
