@@ -30,7 +30,7 @@ TESTS = [
     ("tension 2000", "tension", 2000, 0.2, 6e-4, False, 0.2),
     ("compression 2000", "compression_prism", 2000, -0.6, 4.5e-3, False, 0.2),
     ("cube smooth", "compression_cube", 1882, -0.6, 3e-3, False, 0.1),
-    ("cube held", "compression_cube", 1882, -0.6, 6e-3, True, 0.1),
+    ("cube held", "compression_cube", 1882, -0.6, 3.4e-2, True, 0.1),
 ]
 
 
