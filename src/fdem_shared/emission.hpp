@@ -35,11 +35,11 @@ Law mean_of_sides(Law a, const Law& b) {
   return a;
 }
 
-/// Energy that a joint spent, without what contact of its sides began with.
+/// Energy that a joint spent on its fracture, without what contact of its sides began with.
 template <class Joints>
 double spent_by(const Joints& joints, Index i) {
   const auto &work = joints.work.data()[i], &before = inherited_work(joints, i);
-  return work.open + work.slide - before.open - before.slide;
+  return work.open + work.slide - before.open - before.slide - friction_of_broken(joints, i);
 }
 
 /// Events by what the case says is near, or two mean edges and the time of the slowest wave.

@@ -6,6 +6,7 @@
 #include "core/energy_split.hpp"
 #include "domain/owned.hpp"
 #include "exec/fold_sum.hpp"
+#include "fdem_shared/laws/residual_work.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
@@ -54,11 +55,12 @@ struct GravityPotential {
 };
 
 /// @tparam Stored  a method's: stored(i), what joint i would give back if it were unloaded now
-template <class Stage, class Work, class Inherited, class Stored>
+template <class Stage, class Work, class Inherited, class Rubbed, class Stored>
 struct JointShares {
   View<const Stage> stage;
   View<const Work> work;
   Inherited inherited_work;
+  Rubbed rubbed;  ///< work of residual friction
   Stored stored;
 
   BR_HD void add_to(Energies& s, Index i) const {
@@ -67,7 +69,7 @@ struct JointShares {
     if (stage[i] == Stage::cut) {  // after that it took work out of the model
       const Work inherited = inherited_work[i];
       s.fracture.add(inherited.open);
-      s.sliding.add(inherited.slide);
+      add_slide(s, i, inherited.slide, 0.0);
       s.work.add(inherited.open - taken.open);
       s.work.add(inherited.slide - taken.slide);
       return;
@@ -75,7 +77,7 @@ struct JointShares {
     if (stage[i] == Stage::broken) {
       const Work inherited = inherited_work[i];
       s.fracture.add(taken.open - inherited.open);
-      s.sliding.add(taken.slide - inherited.slide);
+      add_slide(s, i, taken.slide - inherited.slide, inherited.slide);
       return;
     }
     const auto held = stored(i);
@@ -89,11 +91,18 @@ struct JointShares {
     const Work beyond{taken.open - held.open, taken.slide - held.slide};
     const Work spent = beyond.spent();
     s.fracture.add(spent.open);
-    s.sliding.add(spent.slide);
+    add_slide(s, i, spent.slide, held.rubs);
     if (!(beyond.open + beyond.slide > 0.0)) {
       s.elastic.add(beyond.open);
       s.elastic.add(beyond.slide);
     }
+  }
+  /// What joint i has spent by sliding: on friction, and on its fracture.
+  /// @param held  of the work of friction, what springs hold
+  BR_HD void add_slide(Energies& s, Index i, double slide, double held) const {
+    const double rubs = spent_on_friction(rubbed[i], held, slide);
+    s.friction.add(rubs);
+    s.sliding.add(slide - rubs);
   }
 };
 
@@ -134,9 +143,10 @@ Energies held_by_part(const World& w) {
               t.load_work.view()},
           ItemItself{}),
       part(j.size(),
-           own(JointShares<Stage, Work, decltype(works_inherited(j)),
-                           std::remove_cv_t<decltype(of_joints)>>{j.stage.view(), j.work.view(),
-                                                                  works_inherited(j), of_joints},
+           own(
+               JointShares<Stage, Work, decltype(works_inherited(j)), decltype(works_rubbed(j)),
+                           std::remove_cv_t<decltype(of_joints)>>{
+                   j.stage.view(), j.work.view(), works_inherited(j), works_rubbed(j), of_joints},
                ListedElement<Shape::corners>{Shape::side_a(j).view()}),
            part(w.couples.size(),
                 own(CoupleShares<std::remove_cvref_t<decltype(state[0])>>{state},

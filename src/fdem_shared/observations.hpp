@@ -201,7 +201,8 @@ std::vector<Crack> cracks_of(const Joints& j, const std::vector<std::uint8_t>& g
   for (Index i = 0; i < j.size(); ++i) {
     if (j.stage.data()[i] != Stage::broken || is_beside_gone<World>(j, i, gone)) continue;
     const auto &work = j.work.data()[i], &inherited = inherited_work(j, i);
-    all.push_back(crack(i, work.open + work.slide - inherited.open - inherited.slide));
+    all.push_back(crack(
+        i, work.open + work.slide - inherited.open - inherited.slide - friction_of_broken(j, i)));
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Crack& a, const Crack& b) { return a.time < b.time; });

@@ -26,11 +26,12 @@ Fastest fastest(const World& w);
 /// Largest damage of the joints of each element.  [-]
 template <class World>
 std::vector<double> damage(const World& w);
-/// Share of sliding in what a joint has spent: 0 opening, 1 sliding  [-]
+/// Share of sliding in what a broken joint has spent on its fracture: 0 opening, 1 sliding  [-]
 template <class Joints>
 double mode_of(const Joints& joints, Index i) {
   const auto &work = joints.work.data()[i], &inherited = inherited_work(joints, i);
-  const double open = work.open - inherited.open, slide = work.slide - inherited.slide;
+  const double open = work.open - inherited.open,
+               slide = work.slide - inherited.slide - friction_of_broken(joints, i);
   const double opened = open > 0.0 ? open : 0.0, slid = slide > 0.0 ? slide : 0.0;
   return opened + slid > 0.0 ? slid / (opened + slid) : 0.0;
 }

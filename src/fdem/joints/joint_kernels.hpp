@@ -37,6 +37,7 @@ struct JointForces {
   View<JointWork> work;
   View<double> broke_at;
   View<JointHandover> handover;
+  View<double> rubbed;
   View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
 
   template <class R>
@@ -170,6 +171,8 @@ struct JointForces {
     }
     if (damaged) {
       book_work(i, o, first, second, converted<double>(as_in_memory(now)));
+      if (bond.residual > 0.0)
+        book_friction(i, bond, offset, last_opening(a0, a1, b0, b1), o, state);
       points[i] = state;
       if (before == JointStage::whole) {
         stage[i] = JointStage::softened;
@@ -357,13 +360,17 @@ struct JointForces {
            state.point[q]);
     return true;
   }
+  /// A step before.
+  BR_HD JointOpening<double> last_opening(const NodeState& a0, const NodeState& a1,
+                                          const NodeState& b0, const NodeState& b1) const {
+    return opening_of(a0.position - dt * a0.velocity, a1.position - dt * a1.velocity,
+                      b0.position - dt * b0.velocity, b1.position - dt * b1.velocity);
+  }
   /// A joint that softens in this step had stored this much before it: all it had taken up.
   BR_HD void begin_work(Index i, const JointBond& bond, const Vec2& offset, const NodeState& a0,
                         const NodeState& a1, const NodeState& b0, const NodeState& b1) const {
-    const JointOpening<double> o =
-        opening_of(a0.position - dt * a0.velocity, a1.position - dt * a1.velocity,
-                   b0.position - dt * b0.velocity, b1.position - dt * b1.velocity);
-    const StoredEnergy e = stored_in(bond, strength[i], length[i], offset, o, JointPoints{});
+    const StoredEnergy e = stored_in(bond, strength[i], length[i], offset,
+                                     last_opening(a0, a1, b0, b1), JointPoints{});
     work[i].open += e.open;
     work[i].slide += e.slide;
   }
@@ -378,6 +385,23 @@ struct JointForces {
         0.5 * (dot(f, o.normal) * dot(first, o.normal) + dot(s, o.normal) * dot(second, o.normal));
     w.slide -=
         0.5 * (dot(f, o.along) * dot(first, o.along) + dot(s, o.along) * dot(second, o.along));
+  }
+  /// Of the work of this step, that of residual friction, by the trapezoidal rule.
+  /// @param state  its points now; those of the step before are still kept
+  BR_HD void book_friction(Index i, const JointBond& bond, const Vec2& offset,
+                           const JointOpening<double>& before, const JointOpening<double>& now,
+                           const JointPoints& state) const {
+    const double h = length[i];
+    double sum = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      const double from = before.slide[q] + offset.y, to = now.slide[q] + offset.y;
+      const double began = residual_traction(bond, strength[i], h, before.open[q] + offset.x, from,
+                                             points[i].point[q]);
+      const double ended =
+          residual_traction(bond, strength[i], h, now.open[q] + offset.x, to, state.point[q]);
+      sum += weight_of(q) * 0.5 * (began + ended) * (to - from);
+    }
+    rubbed[i] += h * sum;
   }
   BR_HD void finish(Index i) const {
     stage[i] = JointStage::broken;

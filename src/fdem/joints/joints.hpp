@@ -5,8 +5,11 @@
 #include "exec/buffer.hpp"
 #include "fdem/laws/rock_failure.hpp"
 #include "fdem/triangles/triangles.hpp"
+#include "fdem_shared/laws/residual_work.hpp"
 
 namespace breccia::fdem {
+
+using fdem_shared::spent_on_friction;
 
 /// How far a joint has gone.
 /// dormant: its elements move as one until the stress between them reaches its strength;
@@ -70,6 +73,18 @@ struct JointWork {
   }
 };
 
+/// What a joint that is cut has spent.
+struct SpentByCut {
+  JointWork work;
+  double rubbed = 0.0;  ///< of it, on residual friction
+
+  /// Of a softened joint: of its work, less what it still holds.
+  static SpentByCut of(const JointWork& work, const StoredEnergy& held, double rubbed) {
+    const JointWork spent = JointWork{work.open - held.open, work.slide - held.slide}.spent();
+    return {spent, spent_on_friction(rubbed, held.rubs, spent.slide)};
+  }
+};
+
 /// Forces and work that a joint which breaks hands to the contact of its faces.
 struct JointHandover {
   double pressing = 0.0;  ///< compressive force  [N/m]
@@ -100,6 +115,8 @@ struct Joints {
   /// Of its work, what contact of its faces began with; of a joint that is cut, what it had spent
   /// by then.  [J/m]  (pairs, stage)
   Buffer<JointWork> inherited_work;
+  Buffer<double> rubbed;  ///< of its work, that of residual friction; of a joint that is cut, what
+                          ///< that had spent by then  [J/m]  (pairs, stage)
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -114,6 +131,7 @@ struct Joints {
     field("broke_at", "s", broke_at);
     field("handover", "SI", handover);
     field("inherited_work", "J/m", inherited_work);
+    field("rubbed", "J/m", rubbed);
   }
   Index size() const { return edge_a.size(); }
 };
@@ -129,17 +147,31 @@ inline double broke_at(const Joints& j, Index i) {
 inline const JointWork& inherited_work(const Joints& j, Index i) {
   return j.inherited_work.data()[i];
 }
-inline void inherit(Joints& j, Index i, const JointWork& work) {
+inline double rubbed(const Joints& j, Index i) {
+  return j.rubbed.data()[i];
+}
+inline void inherit(Joints& j, Index i, const JointWork& work, double rubbed) {
   j.inherited_work.data()[i] = work;
+  j.rubbed.data()[i] = rubbed;
 }
 inline void take_inherited(Joints& to, const Joints& from) {
   copy_to(to.inherited_work, from.inherited_work);
+  copy_to(to.rubbed, from.rubbed);
 }
 inline View<const double> times_of_break(const Joints& j) {
   return j.broke_at.view();
 }
 inline View<const JointWork> works_inherited(const Joints& j) {
   return j.inherited_work.view();
+}
+inline View<const double> works_rubbed(const Joints& j) {
+  return j.rubbed.view();
+}
+/// Of the sliding work of a joint that is broken, what residual friction took.
+template <class AnyJoints>
+double friction_of_broken(const AnyJoints& j, Index i) {
+  const double held = inherited_work(j, i).slide;
+  return spent_on_friction(rubbed(j, i), held, j.work.data()[i].slide - held);
 }
 
 /// The corners that a joint ties: a0 and a1 along side a; b0 faces a0, b1 faces a1.
@@ -208,6 +240,7 @@ BR_HD inline StoredEnergy stored_in(const JointBond& bond, double strength, doub
     const double weight = (q == 1 ? 4.0 : 1.0) * length / 6.0;
     sum.open += weight * e.open;
     sum.slide += weight * e.slide;
+    sum.rubs += weight * e.rubs;
   }
   return sum;
 }

@@ -183,9 +183,27 @@ BR_HD inline BondTraction<double> edge_response(const JointBond& law, double str
   return t;
 }
 
+/// Of the shear traction of a point whose state follows from its opening and slip, what residual
+/// friction bears, (1 - z) |sigma| tan phi_r at full slip, with the sign of the slip.  [Pa]
+BR_HD inline double edge_friction(const JointBond& law, double strength, double h, double opening,
+                                  double slip, const BondState<double>& state) {
+  if (!(opening < 0.0 && state.damage > 0.0)) return 0.0;
+  const double pressure = (law.stiffness / h) * opening, slid = abs(slip);
+  const double shear_strength = law.cohesion * strength - law.friction * pressure;
+  const double s_p = (2.0 / law.stiffness) * h * shear_strength;
+  double damage = state.damage;
+  if (law.reversible > 0.5)
+    damage = min(1.0, max(0.0, slid - s_p) * shear_strength / (law.softening_slide * strength));
+  const double q = slid / (s_p > 0.0 ? s_p : 1.0);
+  double drag = slid <= s_p ? 2.0 * q - q * q : 1.0;
+  if (state.slip > 0.0) drag = min(1.0, slid / max(state.slip, s_p));
+  return copysign((1.0 - softening(damage)) * -law.residual * pressure * drag, slip);
+}
+
 /// Energy that a point would give back, by direction.  [J/m2]
 struct StoredEnergy {
   double open, slide;
+  double rubs = 0.0;  ///< of slide, what residual friction holds
 };
 /// Of (2 r - r^2) f, r = x / p, up to p.
 BR_HD inline double stored_on_parabola(double f, double x, double p) {
@@ -215,6 +233,7 @@ BR_HD inline StoredEnergy edge_stored(const JointBond& law, double strength, dou
   } else {
     energy.slide = stored_on_parabola(kept, slid, s_p);
   }
+  if (kept > 0.0) energy.rubs = energy.slide * ((1.0 - z) * law.residual * -pressure / kept);
   return energy;
 }
 

@@ -205,6 +205,21 @@ BR_HD inline BondTraction<double> response(const JointBond& law, double strength
   return {t.normal, t.kept + t.friction};
 }
 
+/// Of the friction of a pressed point that has failed, the share of phi_r.  [-]
+BR_HD inline double residual_share(const JointBond& law, const BondState<double>& state) {
+  const double z = softening(state.damage), rest = (1.0 - z) * law.residual;
+  return rest > 0.0 ? rest / (z * law.friction + rest) : 0.0;
+}
+/// Of the shear traction of a point whose state follows from its opening and slip, what residual
+/// friction bears, with the sign of the slip.  [Pa]
+BR_HD inline double residual_traction(const JointBond& law, double strength, double h,
+                                      double opening, double slip, const BondState<double>& state) {
+  if (failure_of(state) == Failure::none)
+    return edge_friction(law, strength, h, opening, slip, state);
+  if (!(opening < 0.0)) return 0.0;
+  return residual_share(law, state) * (law.stiffness / h) * (slip - state.stuck);
+}
+
 /// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
 BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h, double opening,
                                  double slip, const BondState<double>& state) {
@@ -212,8 +227,9 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
     return edge_stored(law, strength, h, opening, slip, state);
   BondState<double> same = state;
   const FailedTraction t = failed_traction(law, strength, h, opening, slip, same);
-  return {0.5 * t.normal * opening,
-          0.5 * t.kept * slip + 0.5 * t.friction * t.friction * h / law.stiffness};
+  const double spring = 0.5 * t.friction * t.friction * h / law.stiffness;
+  return {0.5 * t.normal * opening, 0.5 * t.kept * slip + spring,
+          spring > 0.0 ? residual_share(law, same) * spring : 0.0};
 }
 /// Of it, what contact of the faces can take over: that of a point that is pressed.  [J/m2]
 BR_HD inline StoredEnergy stored_pressed(const JointBond& law, double strength, double h,

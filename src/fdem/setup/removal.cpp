@@ -20,14 +20,14 @@ void cut_off_removed(World& w) {
   copy_to(bonds, w.given->bonds);
   fdem_shared::cut_off(w, [&](const std::vector<TriangleNodes>& nodes, const Joints& j, Index i) {
     const JointWork& work = j.work.data()[i];
-    if (j.stage.data()[i] != JointStage::softened) return JointWork{};
+    if (j.stage.data()[i] != JointStage::softened) return SpentByCut{};
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     const auto place = [&](Index n) { return nodes[at(n / 3)].at[n % 3].position; };
     const Vec2 offset = j.preset.size() > 0 ? j.preset.data()[i] : Vec2{};
     const StoredEnergy held = stored_in(
         bonds[at(j.law.data()[i])], j.strength.data()[i], j.length.data()[i], offset,
         opening_of(place(e.a0), place(e.a1), place(e.b0), place(e.b1)), j.points.data()[i]);
-    return JointWork{work.open - held.open, work.slide - held.slide}.spent();
+    return SpentByCut::of(work, held, rubbed(j, i));
   });
 }
 

@@ -27,6 +27,7 @@ JointForces<Number> joint_kernel(World& w) {
           j.work.view(),
           j.broke_at.view(),
           j.handover.view(),
+          j.rubbed.view(),
           w.exposed.changed.view()};
 }
 

@@ -342,6 +342,7 @@ struct JointForces {
     force[i] = now;
     if (damaged) {
       book_work(i, o, way, last, force[i]);
+      if (bond.residual > 0.0) book_friction(i, bond, offset, last_opening(e), o, state, *kept);
       kept->points = state;
       if (before == JointStage::whole) {
         stage[i] = JointStage::softened;
@@ -431,6 +432,24 @@ struct JointForces {
     JointWork& w = work[i];
     w.open -= 0.5 * open;
     w.slide -= 0.5 * (all - open);
+  }
+  /// Of the work of this step, that of residual friction, by the trapezoidal rule.
+  /// @param state  its points now  @param kept  those of the step before
+  BR_HD void book_friction(Index i, const JointBond& bond, const Vec3& offset,
+                           const JointOpening& before, const JointOpening& now,
+                           const JointPoints& state, JointFailure& kept) const {
+    const double h = length[i];
+    const Vec3 slip_before = slip_in_space(before, offset), slip = slip_in_space(now, offset);
+    double sum = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      const double from = norm(before.slide[q] + slip_before), to = norm(now.slide[q] + slip);
+      const double began = fdem::residual_traction(bond, strength[i], h, before.open[q] + offset.x,
+                                                   from, kept.points.point[q]);
+      const double ended =
+          fdem::residual_traction(bond, strength[i], h, now.open[q] + offset.x, to, state.point[q]);
+      sum += 0.5 * (began + ended) * (to - from);
+    }
+    kept.rubbed += shape[i].area() / 3.0 * sum;
   }
   BR_HD void finish(Index i, JointFailure& kept) const {
     stage[i] = JointStage::broken;

@@ -61,6 +61,7 @@ struct JointFailure {
   Vec3 shear_at_break;     ///< on side a  [N]
   JointWork held;          ///< by its pressed points when it broke  [J]
   JointWork inherited;     ///< of its work, what contact of its faces began with  [J]
+  double rubbed = 0.0;  ///< of its work, that of residual friction; cut: what that had spent  [J]
 
   /// Visits its members by the names that checkpoints have for them.
   template <class Visit>
@@ -71,6 +72,7 @@ struct JointFailure {
     member("shear_at_break", "N", &JointFailure::shear_at_break);
     member("held", "J", &JointFailure::held);
     member("inherited_work", "J", &JointFailure::inherited);
+    member("rubbed", "J", &JointFailure::rubbed);
   }
 };
 
@@ -120,8 +122,13 @@ inline double broke_at(const Joints& j, Index i) {
 inline JointWork inherited_work(const Joints& j, Index i) {
   return j.failure.view().part<&JointFailure::inherited>(i);
 }
-inline void inherit(Joints& j, Index i, const JointWork& work) {
-  j.failure.make(i).inherited = work;
+inline double rubbed(const Joints& j, Index i) {
+  return j.failure.view().part<&JointFailure::rubbed>(i);
+}
+inline void inherit(Joints& j, Index i, const JointWork& work, double rubbed) {
+  JointFailure& record = j.failure.make(i);
+  record.inherited = work;
+  record.rubbed = rubbed;
 }
 inline void take_inherited(Joints& to, const Joints& from) {
   copy_to(to.failure, from.failure);
@@ -131,12 +138,17 @@ inline void take_inherited(Joints& to, const Joints& from) {
 using FailedJoints = RareView<const JointFailure>;
 using TimesOfBreak = PartOfRecords<JointFailure, &JointFailure::broke_at>;
 using InheritedWork = PartOfRecords<JointFailure, &JointFailure::inherited>;
+using RubbedWork = PartOfRecords<JointFailure, &JointFailure::rubbed>;
 inline TimesOfBreak times_of_break(const Joints& j) {
   return {j.failure.view()};
 }
 inline InheritedWork works_inherited(const Joints& j) {
   return {j.failure.view()};
 }
+inline RubbedWork works_rubbed(const Joints& j) {
+  return {j.failure.view()};
+}
+using fdem::friction_of_broken;
 
 /// Of a joint's area, what a corner presses with where the point opposite has failed. It bounds the
 /// stiffness of softened joints (StableStep).  [-]
@@ -225,6 +237,7 @@ BR_HD inline fdem::StoredEnergy stored_in(const JointBond& bond, double strength
         fdem::stored(bond, strength, h, open[q], norm(o.slide[q] + slip), points.point[q]);
     sum.open += area / 3.0 * e.open;
     sum.slide += area / 3.0 * e.slide;
+    sum.rubs += area / 3.0 * e.rubs;
     const double damage = points.point[q].damage;
     if (!(damage > 0.0)) continue;
     if (const PressedCorner corner = PressedCorner::of(open, q); corner.presses())

@@ -21,7 +21,7 @@ void cut_off_removed(World& w) {
   fdem_shared::cut_off(
       w, [&](const std::vector<TetrahedronNodes>& nodes, const Joints& j, Index i) {
         const JointWork& work = j.work.data()[i];
-        if (j.stage.data()[i] != JointStage::softened) return JointWork{};
+        if (j.stage.data()[i] != JointStage::softened) return fdem::SpentByCut{};
         const JointEnds e = JointEnds::of(j.face_a.data()[i], j.face_b.data()[i], j.turn.data()[i]);
         Vec3 a[3], b[3];
         for (int k = 0; k < 3; ++k) {
@@ -32,7 +32,7 @@ void cut_off_removed(World& w) {
         const fdem::StoredEnergy held =
             stored_in(bonds[at(j.law.data()[i])], j.strength.data()[i], j.length.data()[i],
                       j.shape.data()[i].area(), offset, opening_of(a, b), points_of(j, i));
-        return JointWork{work.open - held.open, work.slide - held.slide}.spent();
+        return fdem::SpentByCut::of(work, held, rubbed(j, i));
       });
 }
 

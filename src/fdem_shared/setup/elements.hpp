@@ -184,6 +184,7 @@ void begin_joints(Joints& j, Index count) {
     j.points.resize(count);
     j.handover.resize(count);
     j.inherited_work.resize(count);
+    j.rubbed.resize(count);
   }
 }
 

@@ -167,8 +167,9 @@ void cut_off(World& w, const Spent& spent_by) {
                          gone[at(Shape::side_b(j).data()[i] / Shape::corners)] != 0;
     auto& stage = j.stage.data()[i];
     if (!at_gone || is_parted(stage)) continue;
-    j.work.data()[i] = spent_by(nodes, j, i);
-    inherit(j, i, j.work.data()[i]);
+    const auto spent = spent_by(nodes, j, i);
+    j.work.data()[i] = spent.work;
+    inherit(j, i, spent.work, spent.rubbed);
     stage = std::remove_reference_t<decltype(stage)>::cut;
   }
   const auto back = [](auto& to, const auto& from) {

@@ -80,6 +80,35 @@ TEST(JointBond, pressed_keeps_its_residual_friction_while_it_softens) {
   EXPECT_NEAR(whole - 0.5 * pressure * s_t, (peak - 0.5 * pressure) / peak * 50.0, 1e-4);
 }
 
+/// What residual friction bears is what a joint without it would lack, wherever it goes; what it
+/// stores likewise.
+TEST(JointBond, tells_what_of_its_traction_is_residual_friction) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  for (const double reversible : {0.0, 1.0}) {
+    JointBond rough = bond(), smooth = bond();
+    rough.reversible = smooth.reversible = reversible;
+    rough.residual = 0.5;
+    double most = 0.0;
+    for (int path = 0; path < 20; ++path) {
+      BondState<double> one{}, other{};
+      double opening = 0.0, slip = 0.0;
+      for (int i = 0; i < 200; ++i) {
+        opening += 1e-8 * part(random);
+        slip += 3e-7 * part(random);
+        const double rubs =
+            at(rough, opening, slip, one).shear - at(smooth, opening, slip, other).shear;
+        EXPECT_NEAR(residual_traction(rough, 1.0, h, opening, slip, one), rubs, 1.0);
+        const double held = stored(rough, 1.0, h, opening, slip, one).slide -
+                            stored(smooth, 1.0, h, opening, slip, other).slide;
+        EXPECT_NEAR(stored(rough, 1.0, h, opening, slip, one).rubs, held, 1e-9);
+        most = std::max(most, std::abs(rubs));
+      }
+    }
+    EXPECT_GT(most, 1e5);
+  }
+}
+
 TEST(JointBond, opened_until_it_breaks_takes_its_fracture_energy_and_the_elastic_part) {
   for (const auto& [factor, expected] :
        {std::pair{3.0, 0.080 + 3.0 * 10.0 * 0.386307294745}, {exact_softening_factor, 10.080}}) {

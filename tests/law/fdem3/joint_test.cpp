@@ -27,8 +27,8 @@ JointBond bond() {
 class OneJoint {
  public:
   /// @param face_a, face_b  faces that lie on each other  @param turn  see JointEnds
-  OneJoint(int face_a, int face_b, int turn) {
-    copy_to(bonds_, std::vector<JointBond>{bond()});
+  OneJoint(int face_a, int face_b, int turn, const JointBond& law = bond()) {
+    copy_to(bonds_, std::vector<JointBond>{law});
     const Vec3 corner[3] = {{0.0, 0.0, 0.0}, {mm, 0.0, 0.0}, {0.2 * mm, 0.9 * mm, 0.0}};
     nodes_.resize(2);
     const JointEnds e = JointEnds::of(face_a, 4 + face_b, turn);
@@ -87,6 +87,7 @@ class OneJoint {
   }
   const JointWork& work() const { return work_.data()[0]; }
   JointStage stage() const { return stage_.data()[0]; }
+  double rubbed() const { return failure_.item(0).rubbed; }
   JointPoints points() const { return failure_.item(0).points; }
 
  private:
@@ -176,6 +177,33 @@ TEST(FaceJoint, takes_its_fracture_energies_when_it_is_pulled_and_sheared_apart)
   const JointWork slid = work_of({1.2e-5, 0.0, 0.0});
   EXPECT_NEAR(slid.slide / area, 51.0, 1e-2);
   EXPECT_NEAR(slid.open / area, 0.0, 1e-9);
+}
+
+// Slid apart under a pressure, to any side: of the work G_II + 2/3 f_s s_p an area are softening's,
+// the rest, sigma tan phi_r s_t (1 - 1/k), is that of residual friction.
+TEST(FaceJoint, tells_the_work_of_residual_friction_apart) {
+  const double area = 0.45 * mm * mm, slope = bond().stiffness / (0.5 * mm), pressed = 20e6;
+  const double strength = 15e6 + 0.7 * pressed, s_p = 2.0 * strength / slope;
+  const double s_t = bond().softening_slide / strength;
+  for (const Vec3& way : {Vec3{1.0, 0.0, 0.0}, Vec3{-0.6, 0.8, 0.0}}) {
+    JointBond rough = bond();
+    rough.residual = 0.5;
+    OneJoint joint(0, 0, 0, rough);
+    const int steps = 20000;
+    for (int i = 1; i <= 100; ++i) {
+      const Vec3 at{0.0, 0.0, -0.01 * i * pressed / slope};
+      joint.moved(at, at, at, 1e-6);
+    }
+    for (int i = 1; i <= steps && joint.stage() != JointStage::broken; ++i) {
+      const Vec3 at = 1.1 * i / steps * (s_p + s_t) * way + Vec3{0.0, 0.0, -pressed / slope};
+      joint.moved(at, at, at, 1e-6);
+    }
+    ASSERT_EQ(joint.stage(), JointStage::broken);
+    const double rubbed = 0.5 * pressed * s_t * (1.0 - 1.0 / fdem::exact_softening_factor);
+    EXPECT_NEAR(joint.rubbed() / area, rubbed, 1e-3 * rubbed);
+    EXPECT_NEAR((joint.work().slide - joint.rubbed()) / area, 50.0 + 2.0 / 3.0 * strength * s_p,
+                0.02);
+  }
 }
 
 // Pressed to sigma, slipped by s, let go, slipped back: the way round takes T^3/(12 p_f/h) times

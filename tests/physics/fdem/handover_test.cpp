@@ -22,10 +22,13 @@ struct Pair {
   double taken = 0.0;  ///< work that moving has put in  [J/m]
   Vec2 last{};         ///< force on the upper triangle, of joint and contact  [N/m]
 
-  /// @param first  corner of each triangle that its list begins with
+  /// @param first      corner of each triangle that its list begins with
+  /// @param unloading  of a joint that fails by its own tractions; null: it fails with the rock
   explicit Pair(const MaterialConfig& material, double turn = 0.0, int first = 0,
-                bool upper_first = true)
-      : angle(turn), w(make(material, turn, first, upper_first)), upper_(upper_first ? 0 : 1) {
+                bool upper_first = true, const char* unloading = nullptr)
+      : angle(turn),
+        w(make(material, turn, first, upper_first, unloading)),
+        upper_(upper_first ? 0 : 1) {
     w.last_dt = w.next_dt = dt;
   }
   void move(const Vec2& along) {
@@ -76,8 +79,13 @@ struct Pair {
     w.next_dt = dt;
     HostRun{}.pair_forces(w);
   }
-  static World make(const MaterialConfig& material, double turn, int first, bool upper_first) {
+  static World make(const MaterialConfig& material, double turn, int first, bool upper_first,
+                    const char* unloading) {
     Scene scene;
+    if (unloading != nullptr) {
+      scene.config.joints.unloading = unloading;
+      scene.config.joints.criterion = "edge";
+    }
     scene.config.materials.push_back(material);
     prepare::Mesh mesh;
     mesh.point = {{0.0, 0.0}, {edge, 0.0}, {0.5 * edge, 0.8 * edge}, {0.5 * edge, -0.8 * edge}};
@@ -216,7 +224,7 @@ TEST(Handover, energy_goes_on_too) {
     EXPECT_NEAR(cracks(pair.w)[0].mode, 1.0, 1e-3);
     // the trapezoidal rule by which the test sums work, on the elastic parabola of the joint
     const double off = slip * slip * p_f / 12.0;
-    EXPECT_NEAR(born.elastic + born.fracture, at_break, 2.0 * off);
+    EXPECT_NEAR(born.elastic + born.fracture + born.friction, at_break, 2.0 * off);
 
     constexpr int parts = 1000;
     for (int i = 0; i < 2 * parts; ++i) pair.move({0.0, depth / parts});
@@ -342,6 +350,53 @@ TEST(Handover, no_crack_of_a_split_disc_gives_energy) {
     EXPECT_LT(b.error_relative, 0.005);
     EXPECT_LT(std::abs(b.contact), 1e-3 * b.work);
   }
+}
+
+/// Pressed by sigma, slid until it breaks and on: softening takes G_II besides the elastic branch,
+/// 2/3 f_s s_p, an area, whatever presses; all else is friction, sigma tan phi_r (1 - z) on the way
+/// through softening, whose mean is 1 - 1/k, and sigma tan phi_r once it is over.
+TEST(Handover, a_joint_that_rubs_spends_its_own_energy_on_fracture_and_the_rest_on_friction) {
+  constexpr double residual = 0.4, depth = 2e-8, slip = 1e-9, young = 30e9;
+  constexpr double sigma = 20.0 * young * depth / Pair::edge;
+  MaterialConfig m = rock(residual, residual);
+  m.joint.friction_angle = std::atan(0.7);
+  for (const char* const unloading : {"secant", "reversible"})
+    for (const double sign : {1.0, -1.0}) {
+      Pair pair(m, 0.0, 0, true, unloading);
+      for (int i = 0; i < 20; ++i) pair.move({0.0, -depth / 20});
+      const double strength = 30e6 + 0.7 * sigma;  // f_s
+      const double elastic = 2.0 * Pair::edge * strength / (20.0 * young);
+      const double process = exact_softening_factor * 50.0 / strength;  // s_t
+      double slid = 0.0;
+      const auto slide_to = [&](double end) {
+        for (; slid < end && !pair.broken(); slid += slip) pair.move({sign * slip, 0.0});
+      };
+      // Half way through: D = 1/2, and what friction has taken but holds still is not spent.
+      slide_to(elastic + 0.5 * process);
+      double soft = 0.0;  // integral of z over D
+      for (int i = 0; i < 1000; ++i) soft += softening((i + 0.5) / 2000.0) / 2000.0;
+      const double z = softening(0.5), rub = residual * sigma;
+      double taken = rub * process * (0.5 - soft), held = (1.0 - z) * rub * 0.5 * slid;
+      if (std::string(unloading) == "reversible") held = (1.0 - z) * rub * 2.0 / 3.0 * elastic;
+      EnergySplit now = energies(pair.w);
+      EXPECT_NEAR(now.balance.friction, Pair::edge * (taken - held), 2e-3 * Pair::edge * taken)
+          << unloading;
+      slide_to(2.0 * (elastic + process));
+      ASSERT_TRUE(pair.broken());
+      const double at_break = slid;
+      for (; slid < at_break + 200.0 * slip; slid += slip) pair.move({sign * slip, 0.0});
+      now = energies(pair.w);
+      const double fracture = Pair::edge * (2.0 / 3.0 * strength * elastic + 50.0);
+      EXPECT_NEAR(now.fracture_slide, fracture, 2e-3 * fracture) << unloading;
+      EXPECT_NEAR(now.fracture_open, 0.0, 1e-6 * fracture);
+      // Springs of the faces hold the rest.
+      taken = rub * Pair::edge * (slid - elastic - process / exact_softening_factor);
+      EXPECT_NEAR(now.balance.friction + pair.couple().sprung, taken, 5e-3 * taken) << unloading;
+      EXPECT_NEAR(cracks(pair.w)[0].energy, fracture, 2e-3 * fracture);
+      EXPECT_NEAR(
+          now.balance.fracture + now.balance.friction + now.balance.elastic + now.balance.contact,
+          pair.taken, 1e-3 * pair.taken);
+    }
 }
 
 /// Pressed as hard as rock fails, with joints as soft as the classical codes': the springs of the
