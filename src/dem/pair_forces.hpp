@@ -87,17 +87,19 @@ inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
 #endif
 
 /// Writes an action alone.
-BR_HD inline void write_action(PairForce& to, const double (&numbers)[9],
+template <class Number>
+BR_HD inline void write_action(PairForceOf<Number>& to, const double (&numbers)[9],
                                const double (&stiffness)[9]) {
-  PairForce action;
-  for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
+  PairForceOf<Number> action;
+  for (int k = 0; k < 9; ++k) action.numbers[k] = static_cast<Number>(numbers[k]);
   for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
-  action.stiffness[9] = 0.0F;
+  if constexpr (sizeof action.stiffness > 9 * sizeof(float)) action.stiffness[9] = 0.0F;
 #if defined(__CUDA_ARCH__)
-  int4 parts[sizeof(PairForce) / sizeof(int4)];
+  using Word = std::conditional_t<sizeof action % sizeof(int4) == 0, int4, int2>;
+  Word parts[sizeof action / sizeof(Word)];
   __builtin_memcpy(parts, &action, sizeof action);
-  auto* const words = reinterpret_cast<int4*>(&to);
-  for (std::size_t k = 0; k < sizeof(PairForce) / sizeof(int4); ++k) words[k] = parts[k];
+  auto* const words = reinterpret_cast<Word*>(&to);
+  for (std::size_t k = 0; k < sizeof action / sizeof(Word); ++k) words[k] = parts[k];
 #else
   to = action;
 #endif
@@ -105,13 +107,16 @@ BR_HD inline void write_action(PairForce& to, const double (&numbers)[9],
 
 /// Actions that lie in a tile's own memory (stepping/tile_memory.hpp), each written by its thread;
 /// and the place of the present item among all of its kind.
-struct TileActions {
-  PairForce* records;
+template <class Number>
+struct TileActionsOf {
+  PairForceOf<Number>* records;
   Index number;
   bool books;  ///< whether this tile books what the item spends
 };
-BR_HD inline void write_actions(const TileActions& actions, Index at, const double (&numbers)[9],
-                                const double (&stiffness)[9]) {
+using TileActions = TileActionsOf<double>;
+template <class Number>
+BR_HD inline void write_actions(const TileActionsOf<Number>& actions, Index at,
+                                const double (&numbers)[9], const double (&stiffness)[9]) {
   write_action(actions.records[at], numbers, stiffness);
 }
 
@@ -121,13 +126,20 @@ BR_HD inline void book(const Actions&, const View<double>& spent, Index i, const
   add_to(spent, i, more);
 }
 /// One thread alone adds to a number, so that an addition without an answer gives the same bits.
-BR_HD inline void book(const TileActions& actions, const View<double>& spent, Index, double more) {
+template <class Number>
+BR_HD inline void book(const TileActionsOf<Number>& actions, const View<double>& spent, Index,
+                       double more) {
   if (!actions.books) return;
 #if defined(__CUDA_ARCH__)
   atomicAdd(spent.data + actions.number, more);
 #else
   spent[actions.number] += more;
 #endif
+}
+template <class Number>
+BR_HD inline void book(const TileActionsOf<Number>& actions, const View<double>& spent, Index i,
+                       const Single& more) {
+  book(actions, spent, i, widened(more));
 }
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)

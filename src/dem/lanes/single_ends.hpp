@@ -19,10 +19,7 @@ struct LinkPair<SingleOf<V>> {
   BR_HD R difference() const { return larger; }
 };
 /// @param length  D_eq  [m]
-BR_HD inline LinkPair<Single> load_single_pair(const View<const ElementState>& state,
-                                               const Indices<Single>& a, const Indices<Single>& b,
-                                               double length) {
-  const LinkPair<double> wide = load_pair<double>(state, a, b);
+BR_HD inline LinkPair<Single> single_pair(const LinkPair<double>& wide, double length) {
   const auto to_single = [](const Vec3& v) {
     return Vec3Of<Single>{narrowed(v.x), narrowed(v.y), narrowed(v.z)};
   };
@@ -32,6 +29,11 @@ BR_HD inline LinkPair<Single> load_single_pair(const View<const ElementState>& s
           narrowed(wide.touching()),
           narrowed(wide.difference()),
           narrowed(dot(ends.way, ends.way) - length * length)};
+}
+BR_HD inline LinkPair<Single> load_single_pair(const View<const ElementState>& state,
+                                               const Indices<Single>& a, const Indices<Single>& b,
+                                               double length) {
+  return single_pair(load_pair<double>(state, a, b), length);
 }
 
 #if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))

@@ -64,7 +64,6 @@ TileSearchCase search_case(World& w, TilePlan& plan, Index room, std::size_t byt
           w.linked_starts.view(),
           w.linked_partners.view(),
           w.linked_links.view(),
-          w.concrete.released<double>(),
           w.interface.released<double>(),
           w.concrete.size(),
           w.steel.size(),
@@ -93,7 +92,6 @@ TileSearchCase search_case(World& w, TilePlan& plan, Index room, std::size_t byt
 
 /// Something that a world has and tiles do not know; null: nothing.
 const char* unknown_to_tiles(const World& w) {
-  if (w.exec.precision != Precision::full) return "a precision other than double";
   if (!w.walls.empty()) return "walls";
   if (!w.prescribed.motions.empty()) return "prescribed motions";
   if (w.given->search.every != 0) return "search.every";
@@ -125,7 +123,12 @@ std::unique_ptr<TilePlan> tiles_for(const World& w) {
   const char* reason = unknown_to_tiles(w);
   if (reason == nullptr && at(w.links()) * link_bytes >= at(most) * memory)
     reason = "more links than the memory of its multiprocessors holds";
-  if (w.exec.tiles < 0 && w.links() < links_that_pay * most) return nullptr;
+  // So far measured with one law; a material whose skin is filled by `fabric` has one a class of
+  // links.
+  constexpr std::size_t laws_measured = 16;
+  if (w.exec.tiles < 0 &&
+      (w.links() < links_that_pay * most || w.concrete.groups.size() > laws_measured))
+    return nullptr;
   std::unique_ptr<TilePlan> plan;
   if (reason == nullptr) {
     plan = share_out_to_tiles(w, std::clamp(w.elements.size() / least_elements, Index{1}, most));
@@ -159,7 +162,8 @@ bool runs_by_tiles(World& w) {
   return w.tiles.plan != nullptr && !LaunchTimes::wanted() && has_contacts(w);
 }
 
-TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
+template <class Number>
+TileCase<Number> case_of(World& w, TilePlan& plan, const StopAt& stop) {
   // The contacts that a search brings must fit as well.
   std::size_t bytes = multiprocessors_for(w).memory;
   if (w.exec.space != Space::cuda) bytes = std::min(bytes, plan.bytes + (1U << 17));
@@ -169,7 +173,6 @@ TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
                                              w.contact_actions),
                       twins = contacts_of(w, room, plan.twin_state, plan.twin_slid,
                                           plan.twin_damped, plan.twin_actions);
-  auto interface = link_kernel<double>(w, w.interface, {}, w.steel.size());
   ConcreteParts parts = 0;
   for (const auto& group : w.concrete.groups) parts |= group.law.parts();
   StepClock start;
@@ -179,17 +182,19 @@ TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
   start.stop = stop;
   start.least = ordered_bits(largest_least);
   plan.searches.news.resize(1);
-  return {link_kernel<double>(w, w.concrete, {}, 0),
+  using Law = typename TileCase<Number>::Law;
+  return {link_kernel<Number>(w, w.concrete, {}, 0),
+          w.concrete.released<StoredAs<Number>>(),
           parts,
-          link_kernel<double>(w, w.steel, {}, 0),
-          interface,
+          link_kernel<Number>(w, w.steel, {}, 0),
+          link_kernel<Number>(w, w.interface, {}, w.steel.size()),
           contacts,
           twins,
           move_kernel(w),
           w.elements.force.view(),
           w.elements.torque.view(),
           w.critical.view(),
-          std::as_const(w.concrete.on_device.laws).view(),
+          std::as_const(w.concrete.on_device.as<Law>()).view(),
           std::as_const(w.steel.on_device.laws).view(),
           std::as_const(w.interface.on_device.laws).view(),
           end,
@@ -201,6 +206,10 @@ TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
           search_case(w, plan, room, bytes),
           plan.searches.news.data()};
 }
+
+template TileCase<double> case_of(World& w, TilePlan& plan, const StopAt& stop);
+template TileCase<float> case_of(World& w, TilePlan& plan, const StopAt& stop);
+template TileCase<Single> case_of(World& w, TilePlan& plan, const StopAt& stop);
 
 TileNews take_over(World& w, TilePlan& plan) {
   const Space space = w.exec.space;

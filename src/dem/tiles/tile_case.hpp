@@ -44,7 +44,6 @@ struct TileSearchCase {
   View<double> margin;
   View<const GlobalId> id;
   View<const Index> linked_starts, linked_partners, linked_links;
-  LinkArrays<ConcreteLink>::Below<double> concrete_released;
   LinkArrays<InterfaceLink>::Below interface_released;
   Index concrete, steel;  ///< links of these kinds
   // Contacts.
@@ -70,8 +69,12 @@ struct TileSearchCase {
 };
 
 /// A world as its tiles see it.
+/// @tparam Number  as ConcreteLinkForces
+template <class Number>
 struct TileCase {
-  ConcreteLinkForces<double> concrete;
+  using Law = typename TileMemory<Number>::Law;
+  ConcreteLinkForces<Number> concrete;
+  LinkArrays<ConcreteLink>::Below<StoredAs<Number>> concrete_released;
   ConcreteParts concrete_parts;  ///< that laws of any of these links have
   SteelLinkForces steel;
   InterfaceLinkForces interface;
@@ -79,7 +82,7 @@ struct TileCase {
   MoveElements move;
   View<Vec3> force, torque;
   View<double> critical;
-  View<const ConcreteLink> concrete_laws;
+  View<const Law> concrete_laws;
   View<const SteelLink> steel_laws;
   View<const InterfaceLink> interface_laws;
   EndOfStep<StepRule> end;
@@ -97,7 +100,8 @@ struct TileCase {
   }
 };
 
-TileCase case_of(World& w, TilePlan& plan, const StopAt& stop);
+template <class Number>
+TileCase<Number> case_of(World& w, TilePlan& plan, const StopAt& stop);
 /// Takes over from the device after a launch: contacts that its searches have found, energies of
 /// those that they have dropped. Time is left to the caller.
 TileNews take_over(World& w, TilePlan& plan);
@@ -107,5 +111,16 @@ struct TileReport {
   double slowest = 0.0;  ///< largest stiffness over inertia  [1/s2]
   bool near = false;     ///< some element may use its margin up in the move to come
 };
+BR_HD inline std::uint64_t packed(const TileReport& report) {
+  return ordered_bits(report.slowest) | static_cast<std::uint64_t>(report.near ? 1 : 0) << 63;
+}
+BR_HD inline void hear(TileReport& report, std::uint64_t bits) {
+  report.near = report.near || bits >> 63 != 0;
+  report.slowest = max(report.slowest, number_of(bits & ~(std::uint64_t{1} << 63)));
+}
+/// The least of 1 / x is that of the largest x, rounding included.  [s2]
+BR_HD inline double critical_of(double slowest) {
+  return slowest > 0.0 ? 1.0 / slowest : largest_least;
+}
 
 }  // namespace breccia::dem

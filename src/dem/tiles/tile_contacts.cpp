@@ -171,8 +171,11 @@ void tell_contacts(const World& w, TilePlan& plan, std::size_t most_bytes) {
     by_tile.list(t, plan, contacts, starts, all_touched);
     tile.contacts = static_cast<Index>(contacts.size()) - tile.first_contact;
     tile.touched = static_cast<Index>(all_touched.size()) - tile.first_touched;
-    plan.bytes = std::max(plan.bytes,
-                          give_actions(tile, plan.groups, most_bytes, most_acting(w.exec.space)));
+    const Index most = most_acting(w.exec.space);
+    const std::size_t bytes = with_arithmetic(w.exec.precision, [&](auto number) {
+      return give_actions<decltype(number)>(tile, plan.groups, most_bytes, most);
+    });
+    plan.bytes = std::max(plan.bytes, bytes);
   }
   plan.tell(all_touched, starts, contacts);
   plan.found_there = false;

@@ -7,16 +7,26 @@
 namespace breccia::dem {
 
 /// A tile's part of a world. Functions of several threads take the thread's number among them.
+/// @tparam Number  as ConcreteLinkForces
+template <class Number>
 struct TileContent {
-  const TileCase& all;
+  using Stores = StoredAs<Number>;
+  const TileCase<Number>& all;
   Index number;
-  Tile tile;
-  TileMemory memory;
+  const TileMemory<Number>& memory;
+  const Tile& tile;
 
+  /// @param base  of the tile's memory, which lay_out() has laid out
+  BR_HD TileContent(const TileCase<Number>& of, Index tile_number, std::byte* base)
+      : all(of),
+        number(tile_number),
+        memory(*reinterpret_cast<const TileMemory<Number>*>(base)),
+        tile(memory.tile) {}
   /// @param lists  as the last search has left them
-  BR_HD TileContent(const TileCase& of, const TileLists& lists, Index tile_number, std::byte* base)
-      : all(of), number(tile_number), tile(lists.tiles.data[tile_number]) {
-    memory.lay_out(tile, of.tiles.groups, base);
+  BR_HD static void lay_out(const TileCase<Number>& of, const TileLists& lists, Index tile_number,
+                            std::byte* base) {
+    reinterpret_cast<TileMemory<Number>*>(base)->lay_out(lists.tiles.data[tile_number],
+                                                         of.tiles.groups);
   }
 
   /// Brings everything from the arrays of the world; nothing of what others may write after
@@ -75,28 +85,23 @@ struct TileContent {
     }
   }
 
-  /// The least of 1 / x is that of the largest x, rounding included.  [s2]
-  BR_HD static double critical_of(double slowest) {
-    return slowest > 0.0 ? 1.0 / slowest : largest_least;
-  }
-
  protected:
   template <class T, class Of>
-  BR_HD static View<T> seen(Of* data, Index size) {
+  BR_HD static View<T> seen(const Placed<Of>& items, Index size) {
     View<T> view;
-    view.data = data;
+    view.data = items.data();
     view.size = size;
     return view;
   }
   template <class T>
-  BR_HD static View<T> seen(T* data, Index size) {
-    return seen<T, T>(data, size);
+  BR_HD static View<T> seen(const Placed<T>& items, Index size) {
+    return seen<T, T>(items, size);
   }
   BR_HD bool is_own(const TileLink& link) const { return link.a < tile.own; }
-  BR_HD PlanesView<double> shear() const {
+  BR_HD PlanesView<Stores> shear() const {
     return {seen(memory.shear, 3 * tile.concrete), tile.concrete};
   }
-  BR_HD PlanesView<double> moment() const {
+  BR_HD PlanesView<Stores> moment() const {
     return {seen(memory.moment, 3 * tile.concrete), tile.concrete};
   }
   /// The action of a contact that has one in this step.
@@ -144,8 +149,9 @@ struct TileContent {
       const auto g = static_cast<Index>(link.number);
       memory.concrete[l] = link;
       memory.length[l] = all.concrete.length[g];
-      memory.stiffness[l] = all.concrete.stiffness[g];
-      memory.area[l] = all.concrete.area[g];
+      using Constant = typename TileMemory<Number>::Constant;
+      memory.stiffness[l] = static_cast<Constant>(all.concrete.stiffness[g]);
+      memory.area[l] = static_cast<Constant>(all.concrete.area[g]);
       memory.opening[l] = all.concrete.opening[g];
       shear().store(l, all.concrete.shear[g]);
       moment().store(l, all.concrete.moment[g]);
@@ -168,7 +174,7 @@ struct TileContent {
   }
   BR_HD void bring_lists(const TileLists& lists, Index thread, Index threads) const {
     const TilesView& t = all.tiles;
-    const Index numbers = TileMemory::row_numbers(tile);
+    const Index numbers = TileMemory<Number>::row_numbers(tile);
     for (Index k = thread; k < numbers; k += threads) memory.rows[k] = t.rows[tile.first_row + k];
     for (Index k = thread; k <= tile.own; k += threads)
       memory.starts[k] = lists.starts[tile.first_start + k];

@@ -184,8 +184,8 @@ class Filler {
       const LinksHere& all = from_.kinds[k];
       for (const Index i : order[k])
         filled.links.push_back({place(all.a[at(i)]), place(all.b[at(i)]),
-                                static_cast<std::uint32_t>(i) & 0xfffffffU,
-                                static_cast<std::uint32_t>(all.group[at(i)]) & 0xfU});
+                                static_cast<std::uint32_t>(i) & 0x3ffffffU,
+                                static_cast<std::uint32_t>(all.group[at(i)]) & 0x3fU});
     }
     const LinksHere& bonds = from_.kinds[2];
     for (const Index i : order[2])
@@ -417,8 +417,8 @@ TilePlan::TilePlan(Space space)
       searches(space) {}
 
 std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count) {
-  constexpr std::size_t most_groups = 16;
-  constexpr Index most_links = 1 << 28;
+  constexpr std::size_t most_groups = 64;
+  constexpr Index most_links = 1 << 26;
   if (w.concrete.groups.size() > most_groups || w.steel.groups.size() > most_groups ||
       w.interface.groups.size() > most_groups || w.links() >= most_links)
     return nullptr;

@@ -3,9 +3,11 @@
 // tiles of elements, what each has to know of its neighbours, and where everything lies in it.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "core/precision.hpp"
 #include "core/step_clock.hpp"
 #include "dem/contacts.hpp"
 #include "dem/laws/concrete_link.hpp"
@@ -23,8 +25,8 @@ using TilePlace = std::uint16_t;
 /// A link that a tile evaluates: one end at least is its own.
 struct TileLink {
   TilePlace a, b;
-  std::uint32_t number : 28;  ///< among the links of its kind
-  std::uint32_t group : 4;
+  std::uint32_t number : 26;  ///< among the links of its kind
+  std::uint32_t group : 6;
 };
 /// The neighbours of a bond's element along its bar.
 struct TileAxis {
@@ -62,52 +64,86 @@ struct ElementLoad {
   Vec3 force, torque;  ///<  [N], [N m]
 };
 
-/// Where everything lies in the memory of a tile.
+/// An array in a tile's memory, told by how far it lies from this object, which lies there, too: an
+/// address that each thread kept for itself would fill registers.
+template <class T>
+class Placed {
+ public:
+  BR_HD void place(std::byte* data) {
+    away_ = static_cast<std::int32_t>(data - reinterpret_cast<std::byte*>(this));
+  }
+  BR_HD T* data() const {
+#if defined(__CUDA_ARCH__)  // an address from which nvcc sees that it is of shared memory
+    return reinterpret_cast<T*>(const_cast<std::byte*>(reinterpret_cast<const std::byte*>(this)) +
+                                away_);
+#else
+    return reinterpret_cast<T*>(reinterpret_cast<std::intptr_t>(this) + away_);
+#endif
+  }
+  BR_HD operator T*() const {
+    return data();
+  }
+
+ private:
+  std::int32_t away_;  ///<  [B]
+};
+
+/// Where everything lies in the memory of a tile; this comes first there.
+/// @tparam Number  as ConcreteLinkForces
+template <class Number>
 struct TileMemory {
-  ElementState* state;  ///< of all elements
-  double *mass, *inertia;
-  Index* place;  ///< in the arrays of the world
-  std::int16_t *material, *motion;
-  std::uint8_t* fixed;
-  ElementLoad* load;  ///< of its own elements
-  Quaternion* orientation;
-  Vec3* reference;
-  double *margin, *damping_work, *load_work;
-  double* slowest;  ///< largest stiffness over inertia in this step  [1/s2]
-  float *over_mass,
-      *room;  ///< [1/kg], square of the margin, less what rounding may take  [m2]
+  using Stores = StoredAs<Number>;
+  using Constant = ConstantOf<ComputedIn<Number>>;
+  using Law = ConcreteLinkOf<Constant>;
 
-  TileLink *concrete, *steel, *interface;
-  double *length, *stiffness, *area, *opening, *shear, *moment;  ///< of concrete links
-  double* bar_length;
-  SteelState* bar_state;
-  TileAxis* axis;
-  double *bond_stiffness, *bond_area;
-  InterfaceState* bond_state;
+  Tile tile;
+  Placed<ElementState> state;  ///< of all elements
+  Placed<double> mass, inertia;
+  Placed<Index> place;  ///< in the arrays of the world
+  Placed<std::int16_t> material, motion;
+  Placed<std::uint8_t> fixed;
+  Placed<ElementLoad> load;  ///< of its own elements
+  Placed<Quaternion> orientation;
+  Placed<Vec3> reference;
+  Placed<double> margin, damping_work, load_work;
+  Placed<double> slowest;   ///< largest stiffness over inertia in this step  [1/s2]
+  Placed<float> over_mass;  ///<  [1/kg]
+  Placed<float> room;       ///< square of the margin, less what rounding may take  [m2]
 
-  PairForce* actions;  ///< of concrete links, behind those of bars
-  ElementLoad*
-      received;  ///< of others' elements; in the memory of `actions`, when these are summed
-  PairForce* bar_actions;  ///< of steel links, then bonds
-  TilePlace* rows;  ///< own elements by the length of their rows; first action of each as a, as b,
-                    ///< and the end; then actions from `bar_actions` on
-  TilePlace* starts;  ///< first contact of each own element, and the end
-  TileContact* contacts;
-  std::uint8_t* touching;  ///< whether a contact's ends have touched when they were last looked at
-  TilePlace* acts;         ///< number from 1 of a contact's action in this step, the first ones in
+  Placed<TileLink> concrete, steel, interface;
+  Placed<double> length;  ///< of concrete links, and what follows
+  Placed<Constant> stiffness, area;
+  Placed<Stores> opening, shear, moment;
+  Placed<double> bar_length;
+  Placed<SteelState> bar_state;
+  Placed<TileAxis> axis;
+  Placed<double> bond_stiffness, bond_area;
+  Placed<InterfaceState> bond_state;
+
+  Placed<PairForceOf<Stores>> actions;  ///< of concrete links, behind those of bars
+  Placed<ElementLoad> received;   ///< of others' elements; in the memory of `actions`, when these
+                                  ///< are summed
+  Placed<PairForce> bar_actions;  ///< of steel links, then bonds
+  Placed<TilePlace> rows;  ///< own elements by the length of their rows; first action of each as a,
+                           ///< as b, and the end; then actions from `bar_actions` on
+  Placed<TilePlace> starts;  ///< first contact of each own element, and the end
+  Placed<TileContact> contacts;
+  Placed<std::uint8_t>
+      touching;            ///< whether a contact's ends have touched when they were last looked at
+  Placed<TilePlace> acts;  ///< number from 1 of a contact's action in this step, the first ones in
                            ///< `contact_actions`; 0: none
-  PairForce* contact_actions;
-  float* stiffness_sums;  ///< of own elements: 13 numbers, one array each
-  Index* counters;        ///< next portion of links, next action of a contact
+  Placed<PairForce> contact_actions;
+  Placed<float> stiffness_sums;  ///< of own elements: 13 numbers, one array each
+  Placed<Index> counters;        ///< next portion of links, next action of a contact
 
-  ConcreteLink* concrete_laws;
-  SteelLink* steel_laws;
-  InterfaceLink* interface_laws;
-  StepClock* clocks;  ///< two, in turns
+  Placed<Law> concrete_laws;
+  Placed<SteelLink> steel_laws;
+  Placed<InterfaceLink> interface_laws;
+  Placed<StepClock> clocks;  ///< two, in turns
 
   BR_HD static Index row_numbers(const Tile& tile) { return 3 * tile.own + 1 + tile.row_entries; }
-  /// @returns the bytes that it takes from `base` on
-  BR_HD std::size_t lay_out(const Tile& tile, const TileGroups& groups, std::byte* base);
+  /// @returns the bytes that it takes, from this object on
+  BR_HD std::size_t lay_out(const Tile& of, const TileGroups& groups);
 };
 
 namespace detail {
@@ -118,19 +154,30 @@ struct Pieces {
   std::size_t used = 0;
 
   template <class T>
+  BR_HD void take(Placed<T>& piece, Index count) {
+    piece.place(next<T>(count));
+  }
+  template <class T>
   BR_HD void take(T*& piece, Index count) {
+    piece = reinterpret_cast<T*>(next<T>(count));
+  }
+
+ private:
+  template <class T>
+  BR_HD std::byte* next(Index count) {
     constexpr std::size_t line = 16;
-    used = (used + line - 1) / line * line;
-    piece = reinterpret_cast<T*>(base + used);
-    used += static_cast<std::size_t>(count) * sizeof(T);
+    const std::size_t begin = (used + line - 1) / line * line;
+    used = begin + static_cast<std::size_t>(count) * sizeof(T);
+    return base + begin;
   }
 };
 
 }  // namespace detail
 
-BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups& groups,
-                                             std::byte* base) {
-  detail::Pieces pieces{base};
+template <class Number>
+BR_HD std::size_t TileMemory<Number>::lay_out(const Tile& of, const TileGroups& groups) {
+  tile = of;
+  detail::Pieces pieces{reinterpret_cast<std::byte*>(this), sizeof(TileMemory)};
   const Index own = tile.own, all = tile.elements(), bars = tile.steel, bonds = tile.interface;
   pieces.take(clocks, 2);
   pieces.take(counters, 2);
@@ -202,11 +249,12 @@ struct TilesView {
 
 /// Gives a tile room for up to `most` actions of contacts, as far as memory goes.
 /// @returns bytes that it needs
-BR_HD inline std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes,
-                                      Index most) {
+template <class Number>
+BR_HD std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes,
+                               Index most) {
   const auto bytes = [&] {
-    TileMemory memory;
-    return memory.lay_out(tile, groups, reinterpret_cast<std::byte*>(64));
+    TileMemory<Number> memory;
+    return memory.lay_out(tile, groups);
   };
   tile.acting = 0;
   const std::size_t least = bytes();

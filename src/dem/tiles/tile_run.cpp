@@ -21,16 +21,17 @@ namespace {
 /// Ends the step that a clock holds open, if there is one, by what all tiles have told.
 /// @returns whether tiles leave
 BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileReport& report, StepClock& clock) {
-  if (clock.open != 0)
-    clock.least = ordered_bits(min(largest_least, TileStep::critical_of(report.slowest)));
+  if (clock.open != 0) clock.least = ordered_bits(min(largest_least, critical_of(report.slowest)));
   end(clock);
   return clock.halted != 0;
 }
 
 /// Time as the forces of a step see it, after its move.
-BR_HD StepTime moved(const StepTime& now) {
+BR_HD StepTime after_move(const StepTime& now) {
   return {now.time + now.next_dt, now.next_dt, now.next_dt, now.step};
 }
+/// Models with rates have no tiles.
+constexpr ConcreteParts concrete_with_tiles = concrete_all & ~concrete_rated;
 /// The longest step that may follow one: StepRule lets it grow by a twentieth.
 BR_HD float longest_after(double dt) {
   return 1.0501F * static_cast<float>(dt);
@@ -60,8 +61,8 @@ __device__ TileReport news_of(const TileReport* of_warp) {
 
 /// Loads of others' elements, by `threads` threads: several words are asked for before the first
 /// has come.
-template <int threads>
-__device__ void receive(const TileStep& tile, std::uint32_t tag, Index thread) {
+template <int threads, class Number>
+__device__ void receive(const TileStep<Number>& tile, std::uint32_t tag, Index thread) {
   constexpr int at_once = 6;
   const Index numbers = tile.received();
   for (Index k = thread; k < numbers; k += at_once * threads) {
@@ -83,25 +84,26 @@ __device__ void receive(const TileStep& tile, std::uint32_t tag, Index thread) {
 }
 
 /// Links and contacts: each warp begins with the portion of its number and then asks for more.
-template <int threads>
-__device__ void pair_forces(const TileStep& tile, double dt, Index thread) {
-  const Index lane = thread % TileStep::portion, portions = tile.portions();
-  Index number = thread / TileStep::portion;
+template <int threads, ConcreteParts parts, class Number>
+__device__ void pair_forces(const TileStep<Number>& tile, const StepTime& now, Index thread) {
+  constexpr Index portion = TileStep<Number>::portion;
+  const Index lane = thread % portion, portions = tile.portions();
+  Index number = thread / portion;
   while (number < portions) {
-    tile.pair_force(dt, number, lane);
+    tile.template pair_force<parts>(now, number, lane);
     __syncwarp();
-    if (lane == 0) number = TileStep::take_number(tile.memory.counters);
+    if (lane == 0) number = tile.take_number(tile.memory.counters);
     number = __shfl_sync(~0U, number, 0);
   }
 }
 
 /// Tells all tiles by `threads` threads what this one has found, and hears of all.
 /// @returns what this thread's warp has heard
-template <int threads>
-__device__ TileReport exchange(const TileStep& tile, const TileReport& found, std::uint32_t tag,
-                               Index thread) {
+template <int threads, class Number>
+__device__ TileReport exchange(const TileStep<Number>& tile, const TileReport& found,
+                               std::uint32_t tag, Index thread) {
   const Index tiles = tile.all.tiles.count;
-  const std::uint64_t own = TileStep::packed(found);
+  const std::uint64_t own = packed(found);
   for (Index to = thread; to < tiles; to += threads)
     put(tile.news_word(tag, tile.number, to), own, tag);
   TileReport report;
@@ -109,23 +111,24 @@ __device__ TileReport exchange(const TileStep& tile, const TileReport& found, st
     std::uint64_t bits = 0;
     while (!get(tile.news_word(tag, from, tile.number), bits, tag)) {
     }
-    TileStep::hear(report, bits);
+    hear(report, bits);
   }
   return report_of_warp(report);
 }
 
 /// Waits until all tiles are here, and sees what they have written. @returns whether `flag` is true
 /// for any thread of any
-__device__ bool meet(const TileCase& all, Index number, std::uint32_t tag, bool flag) {
+template <class Number>
+__device__ bool meet(const TileCase<Number>& all, Index number, std::uint32_t tag, bool flag) {
   __threadfence();
   const bool here = __syncthreads_or(flag ? 1 : 0) != 0;
   const auto thread = static_cast<Index>(threadIdx.x), threads = static_cast<Index>(blockDim.x);
   for (Index to = thread; to < all.tiles.count; to += threads)
-    put(TileStep::news_word(all, tag, number, to), here ? 1 : 0, tag);
+    put(TileStep<Number>::news_word(all, tag, number, to), here ? 1 : 0, tag);
   bool any = false;
   for (Index from = thread; from < all.tiles.count; from += threads) {
     std::uint64_t bits = 0;
-    while (!get(TileStep::news_word(all, tag, from, number), bits, tag)) {
+    while (!get(TileStep<Number>::news_word(all, tag, from, number), bits, tag)) {
     }
     any = any || bits != 0;
   }
@@ -139,19 +142,21 @@ struct SearchEnd {
   bool found;  ///< otherwise the host searches in its place
 };
 /// A function of its own: what few steps need costs the others no registers.
-__device__ __noinline__ SearchEnd search(const TileCase* all, Index number, std::byte* memory,
-                                         std::uint32_t tag, double next_dt, Index searches) {
+template <class Number>
+__device__ __noinline__ SearchEnd search(const TileCase<Number>* all, Index number,
+                                         std::byte* memory, std::uint32_t tag, double next_dt,
+                                         Index searches) {
   stay_in_place(all);
   const auto thread = static_cast<Index>(threadIdx.x), threads = static_cast<Index>(blockDim.x);
   const TileLists lists = all->lists(searches);
   const Index contacts = searches == 0 ? all->search.contacts : all->news->contacts;
   if (searches == 0 && number == 0 && thread == 0) all->news->dropped = 0;
   {
-    const TileStep step(*all, lists, number, memory);
-    const bool lost = TileSearch::publish(step, next_dt, contacts, thread, threads);
+    const TileStep<Number> step(*all, number, memory);
+    const bool lost = TileSearch<Number>::publish(step, next_dt, contacts, thread, threads);
     if (meet(*all, number, ++tag, lost)) return {tag, false};
   }
-  const TileSearch tile(*all, lists, number, memory);
+  const TileSearch<Number> tile(*all, lists, number, memory);
   if (meet(*all, number, ++tag, tile.find(thread, threads))) return {tag, false};
   if (tile.number_all(contacts, all->news->dropped, thread, threads)) return {tag, false};
   meet(*all, number, ++tag, false);
@@ -160,8 +165,10 @@ __device__ __noinline__ SearchEnd search(const TileCase* all, Index number, std:
   return {tag, true};
 }
 
-template <int threads>
-__global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant__ TileCase all) {
+template <int threads, class Number, ConcreteParts parts>
+__global__ void __launch_bounds__(threads, 1)
+    launch_tiles(const __grid_constant__ TileCase<Number> all) {
+  constexpr Index first_number = threads / TileStep<Number>::portion;
   extern __shared__ __align__(16) std::byte memory[];
   constexpr int judges = 160, warps = judges / 32;  // the others receive loads meanwhile
   __shared__ TileReport told[warps], heard[warps];
@@ -172,7 +179,9 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
   bool first = true, goes_on = true;
   while (goes_on) {
     const TileLists lists = all.lists(searches);
-    const TileStep tile(all, lists, number, memory);
+    if (thread == 0) TileStep<Number>::lay_out(all, lists, number, memory);
+    __syncthreads();
+    const TileStep<Number> tile(all, number, memory);
     tile.enter(lists, thread, threads);
     if (first && thread == 0) tile.memory.clocks[0] = all.start;
     bool moved = !first;  // by a step that is in its middle
@@ -219,7 +228,7 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
         current = 1 - current;
         if (thread == 0) {
           tile.memory.clocks[current] = clock;
-          tile.count_from(threads / TileStep::portion);
+          tile.count_from(first_number);
         }
         __syncthreads();
         if (news.near && meet(all, number, ++tag, tile.used_margin(clock.now, thread, threads))) {
@@ -237,11 +246,11 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
           break;
         }
       } else if (thread == 0) {
-        tile.count_from(threads / TileStep::portion);
+        tile.count_from(first_number);
       }
       if (moved) __syncthreads();
       moved = false;
-      pair_forces<threads>(tile, tile.memory.clocks[current].now.next_dt, thread);
+      pair_forces<threads, parts>(tile, after_move(tile.memory.clocks[current].now), thread);
       __syncthreads();
       for (Index i = thread; i < tile.sum_items(); i += threads) tile.sum(i, tag + 1);
       __syncthreads();
@@ -256,9 +265,13 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
 #endif
 
 /// All tiles on this processor.
+template <class Number>
 class TilesInTurn {
+  using Step = TileStep<Number>;
+  using Search = TileSearch<Number>;
+
  public:
-  explicit TilesInTurn(const TileCase& all) : all_(all), tag_(all.tag) {
+  explicit TilesInTurn(const TileCase<Number>& all) : all_(all), tag_(all.tag) {
     const std::size_t count = at(all.tiles.count);
     lines_ = all.search.bytes / sizeof(Line) + 1;
     memory_.assign(count * lines_, Line{});
@@ -273,15 +286,15 @@ class TilesInTurn {
     for (bool first = true;; first = false) {
       const TileReport report = exchange(told, ++tag_, first);
       if (end_step(all_.end, report, clock)) break;
-      for (const TileStep& tile : tiles_) tile.move(clock.now, 0, 1);
+      for (const Step& tile : tiles_) tile.move(clock.now, 0, 1);
       clock.open = step_open;
       if (report.near && !search_if_due(clock.now)) {
         clock.host_request = 1;
         break;
       }
-      const StepTime now = moved(clock.now);
+      const StepTime now = after_move(clock.now);
       for (std::size_t t = 0; t < tiles_.size(); ++t) {
-        pair_forces(tiles_[t], now.last_dt);
+        pair_forces(tiles_[t], now);
         told[t] = sums(tiles_[t], tag_ + 1, now.last_dt);
       }
       evaluated_ = true;
@@ -291,7 +304,7 @@ class TilesInTurn {
     news.tag = tag_;
     news.searches = searches_;
     if (clock.host_request != 0) return;
-    for (const TileStep& tile : tiles_) {
+    for (const Step& tile : tiles_) {
       tile.leave(0, 1);
       if (evaluated_) tile.leave_actions(0, 1);
     }
@@ -304,55 +317,57 @@ class TilesInTurn {
   std::byte* memory_of(Index tile) { return memory_[at(tile) * lines_].bytes; }
   void bring_tiles() {
     tiles_.clear();
-    for (Index t = 0; t < all_.tiles.count; ++t)
-      tiles_.emplace_back(all_, all_.lists(searches_), t, memory_of(t));
+    for (Index t = 0; t < all_.tiles.count; ++t) {
+      Step::lay_out(all_, all_.lists(searches_), t, memory_of(t));
+      tiles_.emplace_back(all_, t, memory_of(t));
+    }
     const KernelScope scope;
-    for (const TileStep& tile : tiles_) tile.enter(all_.lists(searches_), 0, 1);
+    for (const Step& tile : tiles_) tile.enter(all_.lists(searches_), 0, 1);
   }
   /// @returns whether steps go on
   bool search_if_due(const StepTime& now) {
     bool due = false;
-    for (const TileStep& tile : tiles_) due = tile.used_margin(now, 0, 1) || due;
+    for (const Step& tile : tiles_) due = tile.used_margin(now, 0, 1) || due;
     ++tag_;
     if (!due) return true;
     const TileLists lists = all_.lists(searches_);
     const Index contacts = searches_ == 0 ? all_.search.contacts : all_.news->contacts;
     if (searches_ == 0) all_.news->dropped = 0;
     bool lost = false;
-    for (const TileStep& tile : tiles_)
-      lost = TileSearch::publish(tile, now.next_dt, contacts, 0, 1) || lost;
+    for (const Step& tile : tiles_)
+      lost = Search::publish(tile, now.next_dt, contacts, 0, 1) || lost;
     if (lost) return false;
-    std::vector<TileSearch> all;
+    std::vector<Search> all;
     for (Index t = 0; t < all_.tiles.count; ++t) all.emplace_back(all_, lists, t, memory_of(t));
-    for (const TileSearch& one : all) lost = one.find(0, 1) || lost;
+    for (const Search& one : all) lost = one.find(0, 1) || lost;
     if (lost) return false;
-    for (const TileSearch& one : all)
-      lost = one.number_all(contacts, all_.news->dropped, 0, 1) || lost;
+    for (const Search& one : all) lost = one.number_all(contacts, all_.news->dropped, 0, 1) || lost;
     if (lost) return false;
-    for (const TileSearch& one : all) one.name(contacts, 0, 1);
+    for (const Search& one : all) one.name(contacts, 0, 1);
     ++searches_;
     bring_tiles();
     return true;
   }
-  static void pair_forces(const TileStep& tile, double dt) {
+  static void pair_forces(const Step& tile, const StepTime& now) {
     tile.count_from(0);
     for (Index at = 0; at < tile.portions(); ++at)
-      for (Index lane = 0; lane < TileStep::portion; ++lane) tile.pair_force(dt, at, lane);
+      for (Index lane = 0; lane < Step::portion; ++lane)
+        tile.template pair_force<concrete_with_tiles>(now, at, lane);
   }
   /// The sums of one element, by lanes that meet.
   struct Sums {
-    const TileStep* tile;
+    const Step* tile;
     std::uint32_t tag;
     Index element;
   };
-  static TileReport sums(const TileStep& tile, std::uint32_t tag, double dt) {
+  static TileReport sums(const Step& tile, std::uint32_t tag, double dt) {
     Sums sums{&tile, tag, 0};
     for (; sums.element < tile.tile.own; ++sums.element)
       lockstep::run(
-          TileStep::width,
+          Step::width,
           [](void* context, int lane) {
             const auto* const of = static_cast<Sums*>(context);
-            of->tile->sum(of->element * TileStep::width + lane, of->tag);
+            of->tile->sum(of->element * Step::width + lane, of->tag);
           },
           &sums);
     TileReport report;
@@ -363,17 +378,17 @@ class TilesInTurn {
   /// Every tile hears the same.
   TileReport exchange(const std::vector<TileReport>& told, std::uint32_t tag, bool first) const {
     const auto count = static_cast<Index>(tiles_.size());
-    for (const TileStep& tile : tiles_)
+    for (const Step& tile : tiles_)
       for (Index to = 0; to < count; ++to)
-        put(tile.news_word(tag, tile.number, to), TileStep::packed(told[at(tile.number)]), tag);
+        put(tile.news_word(tag, tile.number, to), packed(told[at(tile.number)]), tag);
     TileReport all;
-    for (const TileStep& tile : tiles_) {
+    for (const Step& tile : tiles_) {
       TileReport report;
       for (Index from = 0; from < count; ++from) {
         std::uint64_t bits = 0;
         const bool came = get(tile.news_word(tag, from, tile.number), bits, tag);
         BR_ASSERT(came);
-        if (came) TileStep::hear(report, bits);
+        if (came) hear(report, bits);
       }
       for (Index k = 0; !first && k < tile.received(); ++k) {
         std::uint64_t bits = 0;
@@ -386,24 +401,30 @@ class TilesInTurn {
     return all;
   }
 
-  const TileCase& all_;
+  const TileCase<Number>& all_;
   std::uint32_t tag_;
   std::size_t lines_;  ///< of each tile
   std::vector<Line> memory_;
-  std::vector<TileStep> tiles_;  ///< over `memory_`
+  std::vector<Step> tiles_;  ///< over `memory_`
   Index searches_ = 0;
   bool evaluated_ = false;
 };
 
-void launch([[maybe_unused]] const World& w, const TileCase& all) {
+template <class Number>
+void launch([[maybe_unused]] const World& w, const TileCase<Number>& all) {
 #if defined(__CUDACC__)
   if (w.exec.space == Space::cuda) {
-    constexpr int threads = 384;
-    return launch_resident(launch_tiles<threads>, all.tiles.count, threads, all.search.bytes, all);
+    constexpr int threads = 512;
+    const auto go = [&](auto kernel) {
+      launch_resident(kernel, all.tiles.count, threads, all.search.bytes, all);
+    };
+    if ((all.concrete_parts & ~concrete_bounded) == 0)
+      return go(launch_tiles<threads, Number, concrete_bounded>);
+    return go(launch_tiles<threads, Number, concrete_with_tiles>);
   }
 #endif
   BR_ASSERT(w.exec.space == Space::shadow);
-  TilesInTurn(all).run();
+  TilesInTurn<Number>(all).run();
 }
 
 }  // namespace
@@ -422,7 +443,8 @@ Advanced advance_by_tiles(World& w, const StopAt& stop) {
   do {
     TilePlan& plan = *w.tiles.plan;
     const StopAt until{stop.time, std::min(stop.step, w.step + most_steps)};
-    launch(w, case_of(w, plan, until));
+    with_arithmetic(w.exec.precision,
+                    [&](auto number) { launch(w, case_of<decltype(number)>(w, plan, until)); });
     const TileNews news = take_over(w, plan);
     count_steps(news.clock, end, host, taken);
     if (news.clock.host_request == 0) continue;

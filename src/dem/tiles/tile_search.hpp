@@ -59,7 +59,8 @@ struct SearchMemory {
                      std::byte* base) {
     constexpr Index near_each = 40;
     near_room = near_each * tile.own;
-    constexpr std::size_t clocks = 512;  // and what else comes first in TileMemory
+    constexpr std::size_t clocks = 1024;  // and what else comes first in TileMemory
+    static_assert(clocks >= sizeof(TileMemory<double>) + 2 * sizeof(StepClock) + 64);
     detail::Pieces pieces{base, clocks};
     pieces.take(counters, 8);
     pieces.take(box, 1);
@@ -86,15 +87,17 @@ struct SearchMemory {
 
 /// A tile's part in a search. Functions of several threads take the thread's number among them;
 /// those that return a truth return it to each thread for itself: the search has failed.
+template <class Number>
 struct TileSearch {
   static constexpr double gone = -1.0;  ///< radius of elements that have been taken out
 
-  const TileCase& all;
+  const TileCase<Number>& all;
   Index number;
   Tile tile;
   SearchMemory memory;
 
-  BR_HD TileSearch(const TileCase& of, const TileLists& lists, Index tile_number, std::byte* base)
+  BR_HD TileSearch(const TileCase<Number>& of, const TileLists& lists, Index tile_number,
+                   std::byte* base)
       : all(of),
         number(tile_number),
         tile(lists.tiles.data[tile_number]),
@@ -103,8 +106,8 @@ struct TileSearch {
   /// Leaves the tile as its steps have it, begins the travel of its elements, and shows them to
   /// all. Contacts are copied to where the old ones lie.
   /// @param contacts  before the search
-  BR_HD static bool publish(const TileStep& step, double next_dt, Index contacts, Index thread,
-                            Index threads) {
+  BR_HD static bool publish(const TileStep<Number>& step, double next_dt, Index contacts,
+                            Index thread, Index threads) {
     const TileSearchCase& s = step.all.search;
     step.leave(thread, threads);
     MarginRule rule = s.margins;
@@ -177,7 +180,8 @@ struct TileSearch {
       next.contacts = memory.counters[0];
       next.touched = memory.counters[1];
       next.first_contact = next.first_touched = number * most_contacts_of_tile;
-      const std::size_t bytes = give_actions(next, all.tiles.groups, s.bytes, s.most_acting);
+      const std::size_t bytes =
+          give_actions<Number>(next, all.tiles.groups, s.bytes, s.most_acting);
       lost = lost || bytes > s.bytes;
       s.tiles[number] = next;
     }
@@ -353,7 +357,7 @@ struct TileSearch {
       if (s.linked_partners[k] != high) continue;
       const Index link = s.linked_links[k];
       if (link < s.concrete
-              ? !s.concrete_released(link)
+              ? !all.concrete_released(link)
               : link < s.concrete + s.steel || !s.interface_released(link - s.concrete - s.steel))
         return true;
     }

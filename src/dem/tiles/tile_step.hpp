@@ -11,8 +11,16 @@
 
 namespace breccia::dem {
 
-struct TileStep : TileContent {
-  using TileContent::TileContent;
+template <class Number>
+struct TileStep : TileContent<Number> {
+  using Base = TileContent<Number>;
+  using Base::all;
+  using Base::Base;
+  using Base::memory;
+  using Base::number;
+  using Base::tile;
+  using Stores = StoredAs<Number>;
+  using Item = ComputedIn<Number>;
 
   // Phases of a step. Threads meet between them.
 
@@ -36,14 +44,14 @@ struct TileStep : TileContent {
     kernel.set(now);
     Kick& kick = kernel.kick;
     const Index own = tile.own;
-    kick.mass = seen<const double>(memory.mass, tile.elements());
-    kick.inertia = seen<const double>(memory.inertia, tile.elements());
-    kick.fixed = seen<const std::uint8_t>(memory.fixed, tile.elements());
-    kick.motion = seen<const std::int16_t>(memory.motion, tile.elements());
-    kernel.state = seen(memory.state, own);
-    kernel.orientation = seen(memory.orientation, own);
-    kernel.damping_work = seen(memory.damping_work, own);
-    kernel.load_work = seen(memory.load_work, own);
+    kick.mass = this->template seen<const double>(memory.mass, tile.elements());
+    kick.inertia = this->template seen<const double>(memory.inertia, tile.elements());
+    kick.fixed = this->template seen<const std::uint8_t>(memory.fixed, tile.elements());
+    kick.motion = this->template seen<const std::int16_t>(memory.motion, tile.elements());
+    kernel.state = this->seen(memory.state, own);
+    kernel.orientation = this->seen(memory.orientation, own);
+    kernel.damping_work = this->seen(memory.damping_work, own);
+    kernel.load_work = this->seen(memory.load_work, own);
     for (Index e = thread; e < tile.elements(); e += threads) {
       MoveElements::Loaded<double> loaded;
       loaded.state = state_of(e);
@@ -80,7 +88,11 @@ struct TileStep : TileContent {
     return portions_of(tile.contacts) + portions_of(tile.interface) + portions_of(tile.steel) +
            portions_of(tile.concrete);
   }
-  BR_HD void pair_force(double dt, Index at, Index lane) const {
+  /// @param now  after the move: its last step is the one that moved the elements to where they are
+  /// @tparam parts  those that laws of cohesive links may have
+  template <ConcreteParts parts>
+  BR_HD void pair_force(const StepTime& now, Index at, Index lane) const {
+    const double dt = now.last_dt;
     Index k = at * portion + lane;
     if (k < portions_of(tile.contacts) * portion) {
       if (k < tile.contacts) contact(dt, k);
@@ -97,7 +109,7 @@ struct TileStep : TileContent {
       return;
     }
     k -= portions_of(tile.steel) * portion;
-    if (k < tile.concrete) concrete_link(dt, k);
+    if (k < tile.concrete) concrete_link<parts>(now, k);
   }
 
   static constexpr Index width = 8;  ///< threads that add up for an element
@@ -150,8 +162,7 @@ struct TileStep : TileContent {
     const int fixed = memory.fixed[e];
     const float push = is_held(fixed, 0) ? 0.0F : most.straight,
                 twist = is_held(fixed, 3) ? 0.0F : most.turning;
-    const double slowest = max(static_cast<double>(push) / memory.mass[e],
-                               static_cast<double>(twist) / memory.inertia[e]);
+    const double slowest = max(over(push, memory.mass[e]), over(twist, memory.inertia[e]));
     memory.slowest[e] = slowest;
     report.slowest = slowest > report.slowest ? slowest : report.slowest;  // NaN does not count
     report.near = report.near || is_far(e, span, longest);
@@ -175,16 +186,10 @@ struct TileStep : TileContent {
   BR_HD TileWord* news_word(std::uint32_t tag, Index from, Index to) const {
     return news_word(all, tag, from, to);
   }
-  BR_HD static TileWord* news_word(const TileCase& all, std::uint32_t tag, Index from, Index to) {
+  BR_HD static TileWord* news_word(const TileCase<Number>& all, std::uint32_t tag, Index from,
+                                   Index to) {
     const Index tiles = all.tiles.count;
     return all.least + (static_cast<Index>(tag % 2) * tiles + to) * tiles + from;
-  }
-  BR_HD static std::uint64_t packed(const TileReport& report) {
-    return ordered_bits(report.slowest) | static_cast<std::uint64_t>(report.near ? 1 : 0) << 63;
-  }
-  BR_HD static void hear(TileReport& report, std::uint64_t bits) {
-    report.near = report.near || bits >> 63 != 0;
-    report.slowest = max(report.slowest, number_of(bits & ~(std::uint64_t{1} << 63)));
   }
   /// Numbers of the loads of others' elements, and where number k comes.
   BR_HD Index received() const {
@@ -194,61 +199,70 @@ struct TileStep : TileContent {
     return force_words(tag) + 6 * memory.place[tile.own + k / 6] + k % 6;
   }
   BR_HD void receive(Index k, std::uint64_t bits) const {
-    reinterpret_cast<double*>(memory.received)[k] = number_of(bits);
+    reinterpret_cast<double*>(memory.received.data())[k] = number_of(bits);
   }
 
  private:
   BR_HD static Index portions_of(Index items) {
     return (items + portion - 1) / portion;
   }
-  BR_HD TileActions actions(PairForce* records, const TileLink& link) const {
-    return {records, static_cast<Index>(link.number), is_own(link)};
+  template <class Stored>
+  BR_HD TileActionsOf<Stored> actions(PairForceOf<Stored>* records, const TileLink& link) const {
+    return {records, static_cast<Index>(link.number), this->is_own(link)};
   }
   BR_HD ElementsView elements() const {
     const Index n = tile.elements();
-    return {seen<const ElementState>(memory.state, n), seen<const double>(memory.mass, n),
-            seen<const double>(memory.inertia, n)};
+    return {this->template seen<const ElementState>(memory.state, n),
+            this->template seen<const double>(memory.mass, n),
+            this->template seen<const double>(memory.inertia, n)};
   }
   BR_HD ElementState state_of(Index e) const {
-    return read_record(seen<const ElementState>(memory.state, tile.elements()), e);
+    return read_record(this->template seen<const ElementState>(memory.state, tile.elements()), e);
   }
   BR_HD LinkEnd<double> end(Index e) const {
     const ElementState s = state_of(e);
     return {{s.position, s.velocity, s.spin}, s.radius};
   }
 
-  BR_HD void concrete_link(double dt, Index l) const {
+  BR_HD Vec3Of<Item> vector(const Stores* planes, Index l) const {
+    const Index n = tile.concrete;
+    return {Item(planes[l]), Item(planes[n + l]), Item(planes[2 * n + l])};
+  }
+  template <ConcreteParts parts>
+  BR_HD void concrete_link(const StepTime& now, Index l) const {
     const TileLink link = memory.concrete[l];
     const Index n = tile.concrete;
-    const ConcreteLinkForces<double, TileActions> kernel{{},
-                                                         dt,
-                                                         {},
-                                                         {},
-                                                         {},
-                                                         seen(memory.length, n),
-                                                         {},
-                                                         {},
-                                                         seen(memory.opening, n),
-                                                         shear(),
-                                                         moment(),
-                                                         all.concrete.slid,
-                                                         all.concrete.yielded,
-                                                         all.concrete.broke,
-                                                         {},
-                                                         actions(memory.actions, link),
-                                                         0,
-                                                         0};
-    ConcreteLinkForces<double, TileActions>::Loaded<double> loaded;
+    using Kernel = ConcreteLinkForces<Number, TileActionsOf<Stores>>;
+    const Kernel kernel{{},
+                        now.last_dt,
+                        {},
+                        {},
+                        {},
+                        this->seen(memory.length, n),
+                        {},
+                        {},
+                        this->seen(memory.opening, n),
+                        this->shear(),
+                        this->moment(),
+                        all.concrete.slid,
+                        all.concrete.yielded,
+                        all.concrete.broke,
+                        {},
+                        actions(memory.actions.data(), link),
+                        0,
+                        now.step};
+    typename Kernel::template Loaded<Item> loaded;
     loaded.length = memory.length[l];
-    loaded.stiffness = memory.stiffness[l];
-    loaded.area = memory.area[l];
-    loaded.state = {memory.opening[l], shear()[l], moment()[l]};
-    loaded.ends = link_pair(end(link.a), end(link.b));
-    const ConcreteLink& law = memory.concrete_laws[link.group];
-    if ((all.concrete_parts & ~concrete_bounded) == 0)
-      return kernel.template update<concrete_bounded>(law, l, loaded);
-    // Models with rates have no tiles.
-    kernel.template update<concrete_all & ~concrete_rated>(law, l, loaded);
+    loaded.stiffness = Item(memory.stiffness[l]);
+    loaded.area = Item(memory.area[l]);
+    loaded.state = {Item(memory.opening[l]), vector(memory.shear, l), vector(memory.moment, l)};
+    const LinkPair<double> ends = link_pair(end(link.a), end(link.b));
+    if constexpr (is_single<Item>)
+      loaded.ends = single_pair(ends, memory.length[l]);
+    else
+      loaded.ends = ends;
+    const typename Kernel::Law& law = memory.concrete_laws[link.group];
+    kernel.template update<parts>(law, l, loaded);
   }
   BR_HD void steel_link(double dt, Index l) const {
     const TileLink link = memory.steel[l];
@@ -259,10 +273,10 @@ struct TileStep : TileContent {
                                                 {},
                                                 {},
                                                 {},
-                                                seen(memory.bar_state, tile.steel),
+                                                this->seen(memory.bar_state, tile.steel),
                                                 all.steel.yielded,
                                                 all.steel.broke,
-                                                actions(memory.bar_actions, link),
+                                                actions(memory.bar_actions.data(), link),
                                                 0};
     SteelLinkForcesTo<TileActions>::Loaded<double> loaded;
     loaded.length = memory.bar_length[l];
@@ -281,10 +295,10 @@ struct TileStep : TileContent {
                                                     {},
                                                     {},
                                                     {},
-                                                    seen(memory.bond_state, tile.interface),
+                                                    this->seen(memory.bond_state, tile.interface),
                                                     all.interface.slid,
                                                     all.interface.broke,
-                                                    actions(memory.bar_actions, link),
+                                                    actions(memory.bar_actions.data(), link),
                                                     tile.steel};
     InterfaceLinkForcesTo<TileActions>::Loaded<double> loaded;
     loaded.stiffness = memory.bond_stiffness[l];
@@ -305,7 +319,7 @@ struct TileStep : TileContent {
     const ContactForces& world = is_a ? all.contacts : all.twins;
     ContactForcesTo<TileActions> kernel{
         world.law,    dt,
-        elements(),   seen<const std::int16_t>(memory.material, tile.elements()),
+        elements(),   this->template seen<const std::int16_t>(memory.material, tile.elements()),
         world.pairs,  world.materials,
         {},           {},
         world.state,  world.slid,
@@ -314,7 +328,7 @@ struct TileStep : TileContent {
     memory.acts[k] = acts ? static_cast<TilePlace>(take_number(memory.counters + 1)) : 0;
     if (!acts) return;
     // The kernel writes action `pair`.
-    kernel.actions.records = action_of(k) - contact.pair;
+    kernel.actions.records = this->action_of(k) - contact.pair;
     kernel.of_pair(contact.pair, a, b);
     memory.touching[k] = world.state[contact.pair].overlap > 0.0 ? 1 : 0;
   }
@@ -332,13 +346,25 @@ struct TileStep : TileContent {
       }
     }
   };
-  BR_HD static PartSum read(const PairForce& action, int number, int part) {
+  template <class Stored>
+  BR_HD static PartSum read(const PairForceOf<Stored>& action, int first, int part) {
     const float* const two = action.stiffness + 2 * part;
     const float ratio = action.stiffness[8];
-    return {action.numbers[number],
-            action.numbers[number + 3],
+    return {action.numbers[first],
+            action.numbers[first + 3],
             {two[0], two[1]},
             {ratio * two[0], ratio * two[1]}};
+  }
+  /// @param action  an entry of a row
+  BR_HD PartSum read(TilePlace action, int first, int part) const {
+    const auto bars = static_cast<TilePlace>(tile.bars());
+    if (sizeof(Stores) != sizeof(double) && action >= bars)
+      return read(memory.actions[action - bars], first, part);
+    return read(memory.bar_actions[action], first, part);
+  }
+  /// Without a division of zero, for which a GPU takes a slow way.
+  BR_HD static double over(float stiffness, double inertia) {
+    return stiffness > 0.0F ? static_cast<double>(stiffness) / inertia : 0.0;
   }
   BR_HD float& stiffness_sum(int which, Index e) const {
     return memory.stiffness_sums[which * tile.own + e];
@@ -349,17 +375,16 @@ struct TileStep : TileContent {
     const Index end = starts[2 * e + side + 1];
     Index k = starts[2 * e + side];
     for (; k + 1 < end; k += 2) {
-      const PartSum first = read(memory.bar_actions[rows[k]], column, part),
-                    second = read(memory.bar_actions[rows[k + 1]], column, part);
+      const PartSum first = read(rows[k], column, part), second = read(rows[k + 1], column, part);
       sum.add(first);
       sum.add(second);
     }
-    if (k < end) sum.add(read(memory.bar_actions[rows[k]], column, part));
+    if (k < end) sum.add(read(rows[k], column, part));
   }
   BR_HD void add_contacts(PartSum& sum, Index e, int side, int column, int part) const {
     for (Index k = memory.starts[e]; k < memory.starts[e + 1]; ++k)
       if (memory.acts[k] != 0 && memory.contacts[k].side == side)
-        sum.add(read(*action_of(k), column, part));
+        sum.add(read(*this->action_of(k), column, part));
   }
   /// Whether an own element may be further from its reference than its margin after the move to
   /// come: its force gives it its velocity. In single precision, with room for rounding; NaN counts

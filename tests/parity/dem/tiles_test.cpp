@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "dem/energy.hpp"
@@ -25,18 +26,27 @@ namespace tiles_test {
 const std::string small_case = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
 /// Concrete, bars, bonds, and an impactor that comes to touch what it breaks.
-World small_slab(Index tiles, int threads = 1) {
-  const auto config = read_case<Config>(small_case, {});
-  static const Model model = build_model(config, std::string(source_dir) + "/cases/rc_slab");
+World small_slab(Index tiles, int threads = 1, Precision precision = Precision::full,
+                 bool of_library = false) {
+  const auto read = [](const std::vector<std::string>& keys) {
+    return read_case<Config>(small_case, keys);
+  };
+  const auto model_of = [](const Config& config) {
+    return build_model(config, std::string(source_dir) + "/cases/rc_slab");
+  };
+  static const Config given = read({}), library = read({"material.c30.use=C30"});
+  static const Model model_given = model_of(given), model_library = model_of(library);
+  const Config& config = of_library ? library : given;
+  const Model& model = of_library ? model_library : model_given;
   Exec exec;
   exec.threads = threads;
+  exec.precision = precision;
   if (tiles != 0) exec.space = Space::shadow;
   exec.tiles = tiles;
   return make_world(config, model, exec);
 }
 /// As many steps as the impact needs to break links, some at a time.
-void run(World& w, std::int64_t at_once) {
-  constexpr std::int64_t steps = 200;
+void run(World& w, std::int64_t at_once, std::int64_t steps) {
   while (w.step < steps) advance(w, {1e300, std::min(steps, w.step + at_once)});
 }
 
@@ -82,17 +92,19 @@ TEST(Tiles, are_shared_out_alike_by_any_number_of_threads) {
   }
 }
 
-TEST(Tiles, end_with_the_bits_of_the_host) {
-  World host = small_slab(0);
-  run(host, 200);
+void end_with_the_bits_of_the_host(Precision precision, bool of_library = false) {
+  SCOPED_TRACE(word_of(precision));
+  World host = small_slab(0, 1, precision, of_library);
+  const std::int64_t steps = of_library ? 320 : 200;
+  run(host, steps, steps);
   EXPECT_GT(count(host).broken_of(LinkKind::concrete), 100);
   EXPECT_GT(host.searches, 2);
   const EnergyBalance energy = balance(host);
   for (const Index tiles : {6, 40}) {
-    World w = small_slab(tiles);
+    World w = small_slab(tiles, 1, precision, of_library);
     ASSERT_TRUE(runs_by_tiles(w));
     EXPECT_EQ(static_cast<Index>(w.tiles.plan->tiles.size()), tiles);
-    run(w, tiles == 6 ? 37 : 200);  // leaving tiles and coming back changes nothing
+    run(w, tiles == 6 ? 37 : steps, steps);  // leaving tiles and coming back changes nothing
     EXPECT_EQ(state_hash(w), state_hash(host)) << tiles;
     EXPECT_EQ(w.time, host.time);
     EXPECT_EQ(w.searches, host.searches);
@@ -105,6 +117,20 @@ TEST(Tiles, end_with_the_bits_of_the_host) {
     EXPECT_TRUE(w.tiles.plan->found_there) << "tiles have searched themselves";
     same_contacts(w, host);
   }
+}
+TEST(Tiles, end_with_the_bits_of_the_host) {
+  end_with_the_bits_of_the_host(Precision::full);
+}
+/// A hyperbola, a knee, bounds of friction, and a law for each class of links of its fabric.
+TEST(Tiles, end_with_the_bits_of_the_host_for_concrete_of_the_library) {
+  EXPECT_GT(small_slab(0, 1, Precision::full, true).concrete.groups.size(), 16U);
+  end_with_the_bits_of_the_host(Precision::single, true);
+}
+TEST(Tiles, end_with_the_bits_of_the_host_in_mixed_precision) {
+  end_with_the_bits_of_the_host(Precision::mixed);
+}
+TEST(Tiles, end_with_the_bits_of_the_host_in_single_precision) {
+  end_with_the_bits_of_the_host(Precision::single);
 }
 
 /// Once bodies at rest fall, the host must take their common motion off what they travel: tiles
