@@ -95,6 +95,7 @@ class LoadTest {
     curve.fracture = balance(*world_).fracture / area_;
     return curve;
   }
+  const World& world() const { return *world_; }
 
  private:
   double stress_now() const {
