@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -20,16 +21,19 @@ template <class Law, class MakeLaw>
 std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<Law>& set,
                                  const MakeLaw& make_law) {
   std::vector<LinkGroup<Law>>& groups = set.groups;
-  std::vector<Model::Link> links;
-  for (const Model::Link& link : m.links)
-    if (link.kind == set.kind) links.push_back(link);
+  const auto is_here = [&](const Model::Link& link) { return link.kind == set.kind; };
+  std::vector<Model::Link> links;  // grown by halves it would be copied, and its pages cleared anew
+  links.reserve(static_cast<std::size_t>(std::count_if(m.links.begin(), m.links.end(), is_here)));
+  std::copy_if(m.links.begin(), m.links.end(), std::back_inserter(links), is_here);
   const auto law_of = [&](const Model::Link& link) {
     const Model::Bulk bulk = link.kind == LinkKind::concrete ? m.bulk_of(link.a) : Model::Bulk{};
     return std::tuple{link.material, bulk.factor, bulk.rupture_opening, link.strength};
   };
-  std::stable_sort(links.begin(), links.end(), [&](const Model::Link& p, const Model::Link& q) {
+  const auto before = [&](const Model::Link& p, const Model::Link& q) {
     return law_of(p) < law_of(q);
-  });
+  };
+  if (!std::is_sorted(links.begin(), links.end(), before))
+    std::stable_sort(links.begin(), links.end(), before);
   for (std::size_t i = 0; i < links.size(); ++i) {
     const std::int16_t material = links[i].material;
     const auto first = static_cast<Index>(i);
@@ -51,10 +55,10 @@ double radius_of(const Model& m, Index e) {
 }
 
 void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>& links) {
-  std::vector<Index> first, second;
-  for (const Model::Link& link : links) {
-    first.push_back(link.a);
-    second.push_back(link.b);
+  std::vector<Index> first(links.size()), second(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    first[i] = links[i].a;
+    second[i] = links[i].b;
   }
   copy_to(a, first);
   copy_to(b, second);
@@ -83,20 +87,21 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
     group.strength = links[at(group.begin)].strength;
   }
   set_ends(set.a, set.b, links);
-  std::vector<double> length, stiffness, area;
-  for (const Model::Link& link : links) {
-    length.push_back(distance(m, link.a, link.b));
+  std::vector<double> length(links.size()), stiffness(links.size()), area(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Model::Link& link = links[i];
+    length[i] = distance(m, link.a, link.b);
     const MaterialConfig& material = config.materials[at(link.material)];
-    area.push_back(bedding_share(m, link, material).strength * link_section(m, link));
-    stiffness.push_back(link_stiffness(m, link, material));
+    area[i] = bedding_share(m, link, material).strength * link_section(m, link);
+    stiffness[i] = link_stiffness(m, link, material);
   }
   copy_to(set.length, length);
   copy_to(set.stiffness, stiffness);
   copy_to(set.area, area);
   with_number(set.precision, [&](auto number) {
-    std::vector<decltype(number)> opening;
-    for (const Model::Link& link : links)
-      opening.push_back(static_cast<decltype(number)>(link.parted ? link_broken : 0.0));
+    std::vector<decltype(number)> opening(links.size());
+    for (std::size_t i = 0; i < links.size(); ++i)
+      opening[i] = static_cast<decltype(number)>(links[i].parted ? link_broken : 0.0);
     copy_to(set.kept.as<decltype(number)>().opening, opening);
   });
 }

@@ -48,6 +48,7 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   copy_to(e.mass, m.mass);
   copy_to(e.inertia, m.inertia);
   std::vector<ElementState> states;
+  states.reserve(m.radius.size());
   for (std::size_t i = 0; i < m.radius.size(); ++i)
     states.push_back({m.position[i], held.velocity_at_start(i, m.velocity[i]),
                       held.spin_at_start(i, m.spin[i]), m.radius[i]});
