@@ -97,7 +97,7 @@ struct JointShares {
       s.elastic.add(beyond.slide);
     }
   }
-  /// What joint i has spent by sliding: on friction, and on its fracture.
+  /// Energies that joint i has spent by sliding: on friction, and on its fracture.
   /// @param held  of the work of friction, what springs hold
   BR_HD void add_slide(Energies& s, Index i, double slide, double held) const {
     const double rubs = spent_on_friction(rubbed[i], held, slide);

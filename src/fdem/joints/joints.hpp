@@ -73,7 +73,7 @@ struct JointWork {
   }
 };
 
-/// What a joint that is cut has spent.
+/// Energies that a joint that is cut has spent.
 struct SpentByCut {
   JointWork work;
   double rubbed = 0.0;  ///< of it, on residual friction
