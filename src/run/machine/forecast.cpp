@@ -96,6 +96,18 @@ Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std:
   return p;
 }
 
+/// A union or the inside of a surface is packed as the box around it: what is left of that.
+Packed packed_around(const dem::Config& config, const dem::BodyConfig& body,
+                     const std::string& folder) {
+  const dem::BodyConfig whole = prepare::whole_of(body, folder);
+  Packed p = packed(config, whole, folder);
+  if (p.particles || body.pack.count < 1 || whole.pack.count <= body.pack.count) return p;
+  const double left = static_cast<double>(body.pack.count) / whole.pack.count;
+  p.count = body.pack.count;
+  p.volume *= left;
+  return p;
+}
+
 /// A part of the body with elements of the same sizes: as thick as the body where that is thin.
 dem::BodyConfig cut(const Packed& p) {
   dem::BodyConfig body = p.body;
@@ -321,7 +333,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
     } else if (body.shape == "element") {
       few.push_back(body);
     } else {
-      const Packed p = packed(config, prepare::whole_of(body, folder), folder);
+      const Packed p = packed_around(config, body, folder);
       if (p.count < least_elements)
         few.push_back(body);
       else

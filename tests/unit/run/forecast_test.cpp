@@ -79,6 +79,19 @@ TEST(Forecast, of_single_elements_and_short_files_is_the_step_of_their_run) {
   }
 }
 
+TEST(Forecast, of_a_union_counts_what_is_left_of_the_box_around_it) {
+  const auto config = read_case<dem::Config>(
+      CaseText{"method = \"dem3d\"\ntime.end = 1e-4\n[material.c]\nlaw = \"concrete\"\n[[body]]\n"
+               "name = \"tee\"\nmaterial = \"c\"\nsize = [0.4, 0.06, 0.12]\npack.count = 1500\n"
+               "[[body.join]]\ncenter = [0.0, 0.0, 0.08]\nsize = [0.4, 0.16, 0.04]\n",
+               "tee.toml"},
+      {});
+  const dem::Model model = build_model(config, ".");
+  const Forecast f = forecast(config, ".");
+  EXPECT_NEAR(f.items, static_cast<double>(model.size()), 0.05 * f.items);
+  EXPECT_NEAR(f.bonds, static_cast<double>(model.links.size()), 0.1 * f.bonds);
+}
+
 TEST(Forecast, of_tetrahedra_of_a_file_counts_what_the_file_holds) {
   const std::string folder = std::string(source_dir) + "/cases/moving_box_3d";
   const Case read = load_case(folder + "/small.toml", {});
