@@ -47,18 +47,6 @@ std::vector<Triangle> angle(double leg, double height) {
   return triangles;
 }
 
-std::string text_of(const std::vector<Triangle>& triangles) {
-  std::string text = "solid angle\n";
-  for (const Triangle& t : triangles) {
-    text += "facet normal 0 0 0\nouter loop\n";
-    for (const Vec3& v : t)
-      text += "vertex " + std::to_string(1000.0 * v.x) + " " + std::to_string(1000.0 * v.y) + " " +
-              std::to_string(1000.0 * v.z) + "\n";
-    text += "endloop\nendfacet\n";
-  }
-  return text + "endsolid angle\n";
-}
-
 TEST(Surface, knows_where_a_segment_is_nearest_to_it) {
   const Surface surface(angle(0.5, 1.0), "angle");
   const auto along_x = surface.clearance({0.75, 0.2, 0.5}, {0.3, 0.2, 0.5}, 10.0);
@@ -101,7 +89,7 @@ BarConfig bar(const std::vector<Vec3>& points) {
 class AngleWithBars : public ::testing::Test {
  protected:
   AngleWithBars() {
-    replace_file(folder_ / "angle.stl", text_of(angle(0.04, 0.2)));
+    replace_file(folder_ / "angle.stl", stl_text(angle(0.04, 0.2)));
     config_ = case_with_materials();
     BodyConfig part = box_body("part", {}, 1500, 0.55);
     part.shape = "stl";
@@ -283,15 +271,6 @@ Config t_beam() {
   config.links.range = 1.443;
   return config;
 }
-std::string problem_of(const Config& config) {
-  try {
-    check_case(config);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(Rebar, lies_in_a_body_with_joins_and_passes_from_one_solid_to_the_next) {
   Config config = t_beam();
   config.bodies[0].spin = {0.0, 0.0, 2.0};

@@ -1,9 +1,37 @@
 #pragma once
 // Cases that several tests of prepare build models from.
 
+#include <string>
+#include <vector>
+
 #include "dem/setup/config.hpp"
+#include "exec/error.hpp"
+#include "prepare/checks/check_case.hpp"
+#include "prepare/shapes/surface.hpp"
 
 namespace breccia::dem {
+
+/// An STL file of lengths in millimetres.
+inline std::string stl_text(const std::vector<prepare::Surface::Triangle>& triangles) {
+  std::string text = "solid one\n";
+  for (const prepare::Surface::Triangle& t : triangles) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const Vec3& v : t)
+      text += "vertex " + std::to_string(1000.0 * v.x) + " " + std::to_string(1000.0 * v.y) + " " +
+              std::to_string(1000.0 * v.z) + "\n";
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid one\n";
+}
+/// The words of check_case() about a case; empty: it is good.
+inline std::string problem_of(const Config& config) {
+  try {
+    check_case(config);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
 
 inline Config case_with_materials() {
   Config config;

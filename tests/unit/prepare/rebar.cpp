@@ -119,15 +119,6 @@ TEST(Rebar, of_a_mat_may_have_other_numbers_of_bars_each_way) {
   EXPECT_EQ(bars.size(), 8U);
 }
 
-std::string problem_of(const Config& config) {
-  try {
-    check_case(config);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(Rebar, in_a_body_of_another_shape_is_refused_with_the_shapes_that_there_are) {
   Config config = beam();
   config.bodies[0].shape = "element";

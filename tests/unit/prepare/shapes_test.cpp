@@ -52,17 +52,6 @@ bool in_l_shape(const Vec3& p) {
   return within(p.z, 1.0) && within(p.x, 1.0) && within(p.y, 1.0) && !(p.x > 0.5 && p.y > 0.5);
 }
 
-std::string text_of(const std::vector<Triangle>& triangles) {
-  std::string text = "solid one\n";
-  for (const Triangle& t : triangles) {
-    text += "facet normal 0 0 0\nouter loop\n";
-    for (const Vec3& v : t)
-      text += "vertex " + std::to_string(1000.0 * v.x) + " " + std::to_string(1000.0 * v.y) + " " +
-              std::to_string(1000.0 * v.z) + "\n";
-    text += "endloop\nendfacet\n";
-  }
-  return text + "endsolid one\n";
-}
 std::string bytes_of(const std::vector<Triangle>& triangles) {
   std::string bytes(80, ' ');
   const auto count = static_cast<std::uint32_t>(triangles.size());
@@ -121,7 +110,7 @@ TEST(Surface, parts_segments_that_leave_it) {
 TEST(Surface, is_read_from_text_and_from_bytes_and_must_be_closed) {
   const ScratchFolder folder;
   const std::string path = folder / "l.stl";
-  for (const std::string& content : {text_of(l_shape()), bytes_of(l_shape())}) {
+  for (const std::string& content : {dem::stl_text(l_shape()), bytes_of(l_shape())}) {
     replace_file(path, content);
     const Surface surface = prepare::read_surface(path, 1e-3);
     EXPECT_NEAR(surface.volume(), 0.75, 1e-6);
@@ -158,7 +147,7 @@ TEST(Surface, refuses_corners_that_are_nowhere) {
               }).find("triangle 4 has a corner that is no number, or farther than 1e+09 m"),
               std::string::npos)
         << odd;
-    replace_file(path, text_of(triangles));
+    replace_file(path, dem::stl_text(triangles));
     EXPECT_NE(message_of([&] { prepare::read_triangles(path, 1e-3); }).find("line 33: not"),
               std::string::npos)
         << odd << message_of([&] { prepare::read_triangles(path, 1e-3); });
