@@ -120,7 +120,8 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "calibrations": lambda which: rock_library.calibration_table(lines_of("calibrations"), which),
           "rocks": lambda which: rock_library.recovery_table(lines_of("rocks"), which),
           "misfits": lambda _: misfit_table.markdown(lambda name, what: MAKERS[name](what)),
-          "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
+          "localisation": lambda _: localisation.markdown(lines_of("localisation")),
+          "grips": lambda which: localisation.pulled_table(lines_of("grips"), which)}
 
 
 def remade(text, page):
