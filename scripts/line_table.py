@@ -17,7 +17,7 @@ PURPOSES = [  # words, lines at 20a0ddb, patterns
      "exec/shadow_launches* exec/step_graph* exec/staging* domain/peer_link*"),
     ("tiles in a multiprocessor's memory", 0, "dem/tiles/*"),
     ("packs only (AVX2, AVX-512)", 1132,
-     "*/lanes/* */stepping/kernel_lanes* fdem/contact/couple_lanes.hpp exec/lanes* exec/whole_packs.hpp math/pack.hpp math/lanes.hpp math/records.hpp"),
+     "*/lanes/* */stepping/kernel_lanes* fdem/contact/couple_lanes.hpp fdem/joints/joint_lanes.hpp exec/lanes* exec/whole_packs.hpp math/pack.hpp math/lanes.hpp math/records.hpp"),
     ("ranks", 4805, "domain/* dem/ranks* fdem*/ranks* fdem_shared/migration.hpp fdem_shared/rings.hpp */relations.hpp core/relation.hpp run/method/shared_world.hpp run/frames/frame_parts*"),
     ("search, pair lists, travel", 2055,
      "core/broad_phase* core/cell_grid* core/pair_list* core/incidence* core/travel* core/select* core/rows* core/drift* "
@@ -25,7 +25,7 @@ PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("ledger, probes, hash, fragments, stress", 1575,
      "*/emission* */energy* */energies.hpp */observe* */observations.hpp */readings.hpp */probes* core/probe* core/quantity* core/state_hash* core/pieces* core/unsound* core/gauge* dem/stress*"),
     ("stages, servos, tables over time, fluid, walls with mass", 0,
-     "*/servos* */servo_forces.hpp */over_time.hpp */prescribed.hpp */loaded_sides.hpp */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
+     "*/servos* */servo_forces.hpp */face_push.hpp */held_couples.hpp */over_time.hpp */prescribed.hpp */loaded_sides.hpp */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
     ("state, kernels, step, set-up of the methods", 5498, "dem/* fdem/* fdem3/* fdem_shared/* coupled/* core/kernel* core/stepping* core/fields* core/world_space* "
      "core/planes* core/precision* core/region* core/read_only* core/set_up* core/on_host*"),
     ("plain execution: arrays, loops, sort, errors; vectors", 1287, "exec/* math/*"),
@@ -81,9 +81,9 @@ READER = {
          "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/step* fdem_shared/host_run.hpp "
          "fdem_shared/motion.hpp fdem_shared/prescribed.hpp fdem_shared/stable_parts.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem/triangles/loads.hpp fdem_shared/bundle* fdem_shared/insertion* fdem_shared/separated.hpp fdem/fluid/* fdem_shared/fluid/* fdem_shared/sides_now.hpp fdem_shared/bolts/* fdem/bolts* fdem_shared/laws/* fdem/contact/nearness.hpp"),
-        ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/rigid* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
+        ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/face_push.hpp fdem_shared/held_couples.hpp fdem_shared/rigid* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
         ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/joint_stages.hpp fdem_shared/readings.hpp"),
-        ("", "fdem/stepping/* fdem_shared/columns.hpp fdem_shared/wanted.hpp fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
+        ("", "fdem/stepping/* fdem_shared/columns.hpp fdem_shared/wanted.hpp fdem_shared/device_run.hpp fdem_shared/busy_items.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp fdem/joints/joint_lanes.hpp"),
         ("", "nothing"),
         ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/ghosts.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],

@@ -21,6 +21,7 @@
 #include "fdem/triangles/loads.hpp"
 #include "fdem_shared/busy_items.hpp"
 #include "fdem_shared/exposed.hpp"
+#include "fdem_shared/held_couples.hpp"
 #include "fdem_shared/rigid.hpp"
 #include "fdem_shared/stable_parts.hpp"
 
@@ -94,7 +95,8 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, busy.item, busy.count, busy_joints.item, busy_joints.count, ringed, rows);
+         device_flags, held_couples.item, busy.item, busy.count, busy_joints.item,
+         busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -137,11 +139,12 @@ struct World {
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
-  Incidence couple_incidence;  ///< (triangles; search, derive)
-  BroadPhase broad_phase;      ///< scratch of the search (search)
-  Buffer<Index> parent_joint;  ///< see CoupleForces  [-]  (couples; search, derive)
-  Buffer<Index> reach_place;   ///< in `reach`, -1: a ghost, or it cannot touch  [-]
-                               ///< (triangles; search, derive)
+  Incidence couple_incidence;             ///< (triangles; search, derive)
+  BroadPhase broad_phase;                 ///< scratch of the search (search)
+  Buffer<Index> parent_joint;             ///< see CoupleForces  [-]  (couples; search, derive)
+  Buffer<Index> reach_place;              ///< in `reach`, -1: a ghost, or it cannot touch  [-]
+                                          ///< (triangles; search, derive)
+  fdem_shared::HeldCouples held_couples;  ///< (held couples; servo)
 
   // Results of a step, overwritten by the next one.
   Buffer<Motion> motions;        ///< of supports, mid-step  [m/s]  (motions; move)

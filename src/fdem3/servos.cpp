@@ -6,21 +6,19 @@
 
 namespace breccia::fdem3 {
 
-/// Of a tetrahedron whose corners are at x with the velocities v: the force on one of them.
+/// Of a tetrahedron whose corners are at x with the velocities v: the forces on them.
 struct ElasticForces {
   View<const Index> material;
   View<const ElasticTetrahedron> laws;
   View<const ShapeGradients> shape;
   View<const double> viscosity;
 
-  BR_HD Vec3 on_corner(Index t, int corner, const Vec3 (&x)[4], const Vec3 (&v)[4]) const {
+  BR_HD void on_corners(Index t, const Vec3 (&x)[4], const Vec3 (&v)[4], Vec3 (&on)[4]) const {
     const ShapeGradients g = shape[t];
     const Deformation d = deformation(g, x);
     const double eta = viscosity[t];
     const Sym3 rate = eta > 0.0 ? deformation_rate(g, d, v) : Sym3{};
-    Vec3 on[4];
     corner_forces(g, g.volume(), laws[material[t]].piola(d, eta, rate), on);
-    return on[corner];
   }
 };
 inline ElasticForces elastic_forces(World& w) {
@@ -34,6 +32,13 @@ inline CoupleForces pressing_couples(World& w) {
 template <class Visit>
 void with_couples(World& w, const Visit& visit) {
   visit(couple_kernel(w));
+}
+
+/// Couples of a kernel, on the host.
+inline void run_couples_elsewhere(const World& w, const CoupleForces& couples, Index count) {
+  for_each_run(w.exec, count, 64, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) couples.slow(i);
+  });
 }
 
 }  // namespace breccia::fdem3

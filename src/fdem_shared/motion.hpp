@@ -14,8 +14,10 @@
 namespace breccia::fdem_shared {
 
 /// Against the velocity, as large as the force.
-BR_HD inline double opposed(double force, double velocity) {
-  return velocity > 0.0 ? abs(force) : velocity < 0.0 ? -abs(force) : 0.0;
+template <class R>
+BR_HD R opposed(const R& force, const R& velocity) {
+  const R size = abs(force);
+  return select(velocity > 0.0, size, select(velocity < 0.0, -size, constant<R>(0.0)));
 }
 BR_HD inline Vec2 opposed(const Vec2& f, const Vec2& v) {
   return {opposed(f.x, v.x), opposed(f.y, v.y)};
@@ -151,8 +153,7 @@ struct UsedMargin {
 /// How a move has ended.
 enum class Moved : std::uint8_t {
   within,  ///< all are within their margins
-  beyond,  ///< one has used its margin up
-  left     ///< a pack in which one is held, loaded or damped: nothing is written
+  beyond   ///< one has used its margin up
 };
 
 /// Moves the corners and books the work of loads, supports and local damping; and the question
@@ -176,8 +177,7 @@ struct MoveOf {
     Columns<R, Nodes> nodes;
     Columns<R, Corners> force;
     R mass;
-    Index hold;  ///< of a pack: below zero if no element is held
-    Index place[width_of<R>];
+    Index hold[width_of<R>], place[width_of<R>];
     Corners from;   ///< of one element; packs rarely need it
     double margin;  ///< likewise
   };
@@ -188,11 +188,10 @@ struct MoveOf {
   /// All but the sums of forces.
   template <class R>
   BR_HD void load_early(Index t, Loaded<R>& loaded) const {
-    for (Index k = 0; k < width_of<R>; ++k) loaded.place[k] = read_now(&used.place[t + k]);
-    loaded.hold = read_now(&kick.hold[t]);
-    for (Index k = 1; k < width_of<R>; ++k)
-      if (kick.hold[t + k] >= 0) loaded.hold = kick.hold[t + k];
-    if (is_left(loaded)) return;
+    for (Index k = 0; k < width_of<R>; ++k) {
+      loaded.place[k] = read_now(&used.place[t + k]);
+      loaded.hold[k] = read_now(&kick.hold[t + k]);
+    }
     loaded.mass = load_now<R>(kick.mass, t);
     loaded.nodes.read(kick.nodes, t);
     loaded.margin = 0.0;
@@ -204,51 +203,30 @@ struct MoveOf {
   }
   template <class R>
   BR_HD void load_late(Index t, Loaded<R>& loaded) const {
-    if (!is_left(loaded)) loaded.force.read(kick.force, t);
+    loaded.force.read(kick.force, t);
   }
   template <class R>
   BR_HD Moved update(Index t, Loaded<R>& loaded) const {
-    if (is_left(loaded)) return Moved::left;
     loaded.force.wait();
     if constexpr (width_of<R> == 1) {
-      if (is_driven(loaded))
+      if (kick.damping > 0.0 || external.size > 0 || loaded.hold[0] >= 0)
         move_driven(t, loaded);
       else
         move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+      Columns<R, Nodes>::write(nodes, t, loaded.nodes.numbers);
+      return is_beyond(t, loaded) ? Moved::beyond : Moved::within;
     } else {
-      move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+      return move_pack(t, loaded);
     }
-    Columns<R, Nodes>::write(nodes, t, loaded.nodes.numbers);
-    return is_beyond(t, loaded) ? Moved::beyond : Moved::within;
   }
   /// @returns whether the element has used its margin up
   BR_HD bool operator()(Index t) const { return run_at<double>(*this, t) == Moved::beyond; }
 
  private:
-  template <class R>
-  BR_HD bool is_driven(const Loaded<R>& loaded) const {
-    return kick.damping > 0.0 || external.size > 0 || loaded.hold >= 0;
-  }
-  /// Whether a pack is not to be taken as one.
-  template <class R>
-  BR_HD bool is_left(const Loaded<R>& loaded) const {
-    return width_of<R> != 1 && is_driven(loaded);
-  }
-  template <class R>
-  BR_HD bool is_beyond(Index t, const Loaded<R>& loaded) const {
-    if constexpr (width_of<R> == 1) {
-      Nodes now;
-      __builtin_memcpy(&now, loaded.nodes.numbers, sizeof now);
-      return loaded.place[0] >= 0 && used.beyond(now, loaded.from, loaded.margin);
-    } else {
-      bool beyond = false;
-      for (Index k = 0; k < width_of<R>; ++k) {
-        const Index place = loaded.place[k];
-        if (place >= 0 && used.beyond(nodes[t + k], used.reference[place], used.margin[place]))
-          beyond = true;
-      }
-      return beyond;
-    }
+  BR_HD bool is_beyond(Index, const Loaded<double>& loaded) const {
+    Nodes now;
+    __builtin_memcpy(&now, loaded.nodes.numbers, sizeof now);
+    return loaded.place[0] >= 0 && used.beyond(now, loaded.from, loaded.margin);
   }
   /// Moves corners c that forces f alone act on.
   template <class R>
@@ -266,9 +244,82 @@ struct MoveOf {
       }
   }
 
+  /// A pack, on the host. Elements that are held are taken one by one.
+  template <class R>
+  Moved move_pack(Index t, Loaded<R>& loaded) const {
+    constexpr Index width = width_of<R>;
+    Nodes held[width];
+    Index free = width;
+    for (Index k = 0; k < width; ++k)
+      if (loaded.hold[k] >= 0) {
+        held[k] = nodes[t + k];
+        --free;
+      }
+    Booked<R> booked{};
+    if (free > 0) {
+      if (kick.damping > 0.0 || external.size > 0)
+        booked = move_loaded(t, loaded);
+      else
+        move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+      Columns<R, Nodes>::write(nodes, t, loaded.nodes.numbers);
+    }
+    Moved moved = Moved::within;
+    for (Index k = 0; k < width; ++k) {
+      const Index place = loaded.place[k];
+      if (loaded.hold[k] >= 0) {
+        nodes[t + k] = held[k];
+        if ((*this)(t + k)) moved = Moved::beyond;
+        continue;
+      }
+      if (place >= 0 && used.beyond(nodes[t + k], used.reference[place], used.margin[place]))
+        moved = Moved::beyond;
+      if (kick.damping > 0.0) damping_work[t + k] += booked.damped[k];
+      if (external.size > 0) load_work[t + k] += booked.loads[k];
+    }
+    return moved;
+  }
+  template <class R>
+  struct Booked {
+    R damped, loads;  ///< taken off, and put in  [J; in 2D J/m]
+  };
+  /// Moves elements that are damped or loaded, but not held.
+  template <class R>
+  Booked<R> move_loaded(Index t, Loaded<R>& loaded) const {
+    const R scale = kick.span() / loaded.mass, half = 0.5 * scale, none = constant<R>(0.0);
+    Columns<R, Corners> external_force;
+    if (external.size > 0) external_force.read(external, t);
+    Booked<R> booked{none, none};
+    for (int k = 0; k < corners; ++k) {
+      R damped = none, loads = none;
+      for (int axis = 0; axis < dimension; ++axis) {
+        R& position = loaded.nodes.numbers[2 * dimension * k + axis];
+        R& velocity = loaded.nodes.numbers[2 * dimension * k + dimension + axis];
+        R force =
+            loaded.force.numbers[dimension * k + axis] + loaded.mass * part_of(kick.gravity, axis);
+        const R before = velocity;
+        R off = none;
+        if (kick.damping > 0.0) {
+          off = kick.damping * opposed<R>(force, before + half * force);
+          force = force - off;
+        }
+        velocity = before + scale * force;
+        const R after = kick.next_dt * velocity, both = kick.last_dt * before + after;
+        damped = axis == 0 ? off * both : damped + off * both;
+        if (external.size > 0) {
+          const R by_loads = external_force.numbers[dimension * k + axis] * both;
+          loads = axis == 0 ? by_loads : loads + by_loads;
+        }
+        position = position + after;
+      }
+      booked.damped = booked.damped + 0.5 * damped;
+      booked.loads = booked.loads + 0.5 * loads;
+    }
+    return booked;
+  }
+
   /// Moves an element that is held, loaded or damped; books the work.
   BR_HD void move_driven(Index t, Loaded<double>& loaded) const {
-    typename Kick::Given of{{}, {}, loaded.mass, loaded.hold};
+    typename Kick::Given of{{}, {}, loaded.mass, loaded.hold[0]};
     __builtin_memcpy(&of.nodes, loaded.nodes.numbers, sizeof of.nodes);
     __builtin_memcpy(&of.force, loaded.force.numbers, sizeof of.force);
     const typename Kick::Result r = kick(of);

@@ -431,6 +431,7 @@ void derive_mesh_couples(World& w) {
   using Shape = ShapeOf<World>;
   const Pairs& pairs = w.couples.pairs;
   build_incidence(w.exec, pairs.a, pairs.b, Shape::elements(w).id, w.couple_incidence);
+  w.held_couples.known = false;
   w.parent_joint.resize(pairs.size());
   if (w.exec.space != Space::host) {
     w.busy.resize(pairs.size());

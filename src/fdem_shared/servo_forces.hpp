@@ -2,30 +2,15 @@
 // The text of fdem_shared/servos.hpp.
 
 #include "core/incidence.hpp"
+#include "core/select.hpp"
 #include "domain/ghosts.hpp"
 #include "domain/set_here.hpp"
 #include "exec/fold_sum.hpp"
+#include "fdem_shared/face_push.hpp"
 #include "fdem_shared/servos.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
-
-/// Elements that a servo moves as a whole: those of a platen.
-template <class Shape>
-struct LedWhole {
-  std::int16_t motion;
-  int axis;
-  View<const Index> hold;
-  View<const typename Shape::Hold> holds;
-
-  BR_HD bool operator()(Index t) const {
-    if (hold[t] < 0) return false;
-    const typename Shape::Hold& h = holds[hold[t]];
-    for (int k = 0; k < static_cast<int>(Shape::corners); ++k)
-      if (h.motion[k] != motion || (h.fixed_at(k) >> axis & 1) == 0) return false;
-    return true;
-  }
-};
 
 /// A held corner takes what all else does to it. How stiff that is, it knows by its own modulus. A
 /// plate knows what a platen's contacts (PlatenPush) and the elements of a face (FacePush) will do;
@@ -52,9 +37,13 @@ struct SupportPush {
   View<const typename Shape::Stage> stage;
 
   BR_HD ServoReading operator()(Index k) const {
-    const Index n = corners[k], t = n / Shape::corners;
     ServoReading r;
-    if (!owned(t)) return r;
+    add_to(r, k);
+    return r;
+  }
+  BR_HD void add_to(ServoReading& r, Index k) const {
+    const Index n = corners[k], t = n / Shape::corners;
+    if (!owned(t)) return;
     r.force.add(-(part_of(force[t].at[n % Shape::corners], axis) + mass[t] * gravity));
     if (!plate) {
       r.stiffness.add(Shape::corner_stiffness(laws[law_of[t]], reference[t]));
@@ -65,7 +54,6 @@ struct SupportPush {
       const double penalty = contacts[material[t] * materials + material[t]].penalty;
       r.inertia.add(0.5 * dt * dt * Shape::pressed_corner(penalty, reference[t]));
     }
-    return r;
   }
   /// Whether a joint ties it to an element that does not go with it.
   BR_HD bool is_tied(Index t) const {
@@ -80,163 +68,6 @@ struct SupportPush {
   }
 };
 
-/// Elements with corners in a face that a support holds: where they will be after the step to come,
-/// with the face at the velocity v_0 that it has, and all else moved by the forces of the moment.
-template <class Shape, class Kick>
-struct FaceAfter {
-  static constexpr int corners = static_cast<int>(Shape::corners);
-  double dt;        ///< of the next step  [s]
-  double velocity;  ///< v_0  [m/s]
-  LedWhole<Shape> led;
-  Kick kick;
-
-  /// Whether a corner lies in the face.
-  BR_HD bool leads(Index t, int corner) const {
-    if (led.hold[t] < 0) return false;
-    const typename Shape::Hold& h = led.holds[led.hold[t]];
-    return h.motion[corner] == led.motion && (h.fixed_at(corner) >> led.axis & 1) != 0;
-  }
-  BR_HD bool leads_one(Index t) const {
-    for (int k = 0; k < corners; ++k)
-      if (leads(t, k)) return true;
-    return false;
-  }
-  /// @param way  that the face goes farther  [m]
-  BR_HD typename Shape::Nodes operator()(Index t, double way) const {
-    const auto of = kick.given(t);
-    const auto then = kick(of);
-    const int none = 0;
-    typename Shape::Nodes after = of.nodes;
-    for (int k = 0; k < corners; ++k) {
-      auto &x = after.at[k].position, &v = after.at[k].velocity;
-      v = held_parts(of.hold >= 0 ? led.holds[of.hold].fixed_at(k) : none, v, then.velocity[k]);
-      if (leads(t, k)) part_of(v, led.axis) = velocity;
-      x += dt * v;
-      if (!leads(t, k)) continue;
-      part_of(x, led.axis) += way;
-      part_of(v, led.axis) += way / dt;
-    }
-    return after;
-  }
-};
-
-/// How far a face goes to feel its stiffness.  [m]
-template <class Shape>
-BR_HD double little_way(const typename Shape::Reference& reference) {
-  constexpr double share = 1e-6;  // of an element
-  return share * 100.0 * Shape::near(reference);
-}
-
-/// The push to come of an element that has corners in a face that a support holds. With the face at
-/// v_0 a corner will push with P_1 in the step to come instead of P_0 now, and with K dt more for
-/// each m/s more: R' = R + (P_1 - P_0) + K (v - v_0) dt. Joints between corners of the face do
-/// nothing to their sum.
-template <class Shape, class Elastic, class Kick>
-struct FacePush {
-  static constexpr int corners = static_cast<int>(Shape::corners);
-  OwnedView owned;
-  View<const Index> members;  ///< held corners
-  FaceAfter<Shape, Kick> after;
-  Elastic elastic;
-  View<const typename Shape::Reference> reference;
-
-  BR_HD ServoReading operator()(Index i) const {
-    const Index t = members[i] / Shape::corners;
-    const int corner = static_cast<int>(members[i] % Shape::corners);
-    ServoReading r;
-    if (!owned(t) || after.led.hold[t] < 0 || after.led(t)) return r;
-    const double way = little_way<Shape>(reference[t]);
-    const double now = push_of(t, corner, after.kick.given(t).nodes);
-    const double next = push_of(t, corner, after(t, 0.0));
-    const double stiffness = (push_of(t, corner, after(t, way)) - next) / way;
-    r.stiffness.add(stiffness);
-    r.flow.add(stiffness * after.velocity - (next - now) / after.dt);
-    return r;
-  }
-
- private:
-  BR_HD double push_of(Index t, int corner, const typename Shape::Nodes& nodes) const {
-    typename Shape::Vector x[corners], v[corners];
-    for (int k = 0; k < corners; ++k) {
-      x[k] = nodes.at[k].position;
-      v[k] = nodes.at[k].velocity;
-    }
-    return -part_of(elastic.on_corner(t, corner, x, v), after.led.axis);
-  }
-};
-
-/// A couple's forces by its law, friction included, where its two elements will be after a step,
-/// without a change of its state.
-/// @param dt  of that step  [s]
-template <class Couples, class Nodes>
-BR_HD auto force_after(const Couples& couples, Index i, double dt, const Nodes (&nodes)[2]) {
-  const Index a = 0, b = 1, no_joint = -1,
-              materials[2] = {couples.material[couples.a[i]], couples.material[couples.b[i]]};
-  auto state = couples.state[i];
-  auto force = couples.force[i];
-  Couples alone = couples;
-  const auto see = [](auto& view, auto* items, Index count) {
-    view.data = items;
-    view.size = count;
-    view.space = Space::host;
-  };
-  std::uint8_t exposed[2] = {};
-  if constexpr (requires { couples.exposed; }) {
-    exposed[0] = couples.exposed[couples.a[i]];
-    exposed[1] = couples.exposed[couples.b[i]];
-    see(alone.exposed, exposed, 2);
-  }
-  alone.dt = dt;
-  see(alone.nodes, nodes, 2);
-  see(alone.material, materials, 2);
-  see(alone.a, &a, 1);
-  see(alone.b, &b, 1);
-  see(alone.parent_joint, &no_joint, 1);
-  see(alone.state, &state, 1);
-  see(alone.force, &force, 1);
-  alone.slow(0);
-  return force;
-}
-
-/// The push to come of contacts of elements that have corners in a face that a support holds, by
-/// their law, as FacePush.
-template <class Shape, class Couples, class Kick>
-struct FaceContactPush {
-  OwnedView owned;
-  FaceAfter<Shape, Kick> after;
-  Couples couples;
-  View<const typename Shape::Reference> reference;
-
-  BR_HD ServoReading operator()(Index i) const {
-    const Index pair[2] = {couples.a[i], couples.b[i]};
-    ServoReading r;
-    if (!owned(pair[0]) || after.led(pair[0]) || after.led(pair[1])) return r;
-    const bool by_a = after.leads_one(pair[0]);
-    if (!by_a && !after.leads_one(pair[1])) return r;
-    const double way = little_way<Shape>(reference[pair[by_a ? 0 : 1]]);
-    const double now = push_of(pair, couples.force[i]), next = push_after(i, pair, 0.0);
-    const double stiffness = (push_after(i, pair, way) - next) / way;
-    r.stiffness.add(stiffness);
-    r.flow.add(stiffness * after.velocity - (next - now) / after.dt);
-    return r;
-  }
-
- private:
-  BR_HD double push_after(Index i, const Index (&pair)[2], double way) const {
-    const typename Shape::Nodes nodes[2] = {after(pair[0], way), after(pair[1], way)};
-    return push_of(pair, force_after(couples, i, after.dt, nodes));
-  }
-  template <class Force>
-  BR_HD double push_of(const Index (&pair)[2], const Force& force) const {
-    double push = 0.0;
-    for (int k = 0; k < static_cast<int>(Shape::corners); ++k) {
-      if (after.leads(pair[0], k)) push -= part_of(to_space(force.on_a.at[k]), after.led.axis);
-      if (after.leads(pair[1], k)) push -= part_of(to_space(force.on_b.at[k]), after.led.axis);
-    }
-    return push;
-  }
-};
-
 /// The push of a platen's contacts to come. With the platen at the velocity v_0 that it has, and
 /// all else moved by the forces of the moment, it will push with P_1 in the step to come instead of
 /// P_0 now, and with K dt more for each m/s more: R' = R + (P_1 - P_0) + K (v - v_0) dt.
@@ -245,6 +76,7 @@ struct PlatenPush {
   using Vector = typename Shape::Vector;
   static constexpr int corners = static_cast<int>(Shape::corners);
   OwnedView owned;
+  View<const Index> listed;  ///< couples of held elements
   int axis;
   double dt;        ///< of the next step  [s]
   double velocity;  ///< v_0  [m/s]
@@ -260,9 +92,9 @@ struct PlatenPush {
     add_to(r, i);
     return r;
   }
-  BR_HD void add_to(ServoReading& r, Index i) const {
+  BR_HD void add_to(ServoReading& r, Index item) const {
     constexpr double share = 1e-6;  // of an element: how far it goes to feel the stiffness
-    const Index a = couples.a[i], b = couples.b[i];
+    const Index i = listed[item], a = couples.a[i], b = couples.b[i];
     const bool by_a = led(a);
     if (by_a == led(b) || !owned(by_a ? b : a)) return;
     Vector x[2][corners];
@@ -315,6 +147,23 @@ double target_of(const World& w, const Support& support) {
   return support.servo.target(support.servo.aims_at(w.time, w.next_dt), support.history.begin);
 }
 
+struct HoldsOne {
+  View<const Index> hold, a, b;
+  BR_HD bool operator()(Index i) const { return hold[a[i]] >= 0 || hold[b[i]] >= 0; }
+};
+template <class World>
+View<const Index> held_couples(World& w) {
+  HeldCouples& held = w.held_couples;
+  if (!held.known) {
+    const auto& pairs = std::as_const(w.couples.pairs);
+    const auto& hold = std::as_const(ShapeOf<World>::elements(w).hold);
+    held.item =
+        items_where(w.exec, pairs.size(), HoldsOne{hold.view(), pairs.a.view(), pairs.b.view()});
+    held.known = true;
+  }
+  return std::as_const(held.item).view();
+}
+
 /// @param number  of the set of its corners
 template <class World, class Support>
 ServoReading read_support(World& part, std::size_t support, std::size_t number,
@@ -342,6 +191,7 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
   const View<const typename Shape::Reference> reference = std::as_const(Shape::reference(e)).view();
   const LedWhole<Shape> led{motion, axis, std::as_const(e.hold).view(), part.given->holds.view()};
   FoldSum<ServoReading> sum(part.exec);
+  ServoReading contacts;
   sum.add(corners.size, SupportPush<Shape>{owned,
                                            axis,
                                            part_of(part.given->gravity, axis),
@@ -365,6 +215,7 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
   if (servo.is_plate()) {
     const auto couples = pressing_couples(part);
     const auto moves = kick(part);
+    const View<const Index> listed = held_couples(part);
     if (Shape::contact_alone_presses(part)) {
       const auto elastic = elastic_forces(part);
       const FaceAfter<Shape, std::remove_cv_t<decltype(moves)>> after{part.next_dt, state.velocity,
@@ -374,16 +225,20 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
                   owned, corners, after, elastic, reference});
       with_couples(part, [&](const auto& in_touch) {
         using InTouch = std::remove_cvref_t<decltype(in_touch)>;
-        sum.add(part.couples.size(), FaceContactPush<Shape, InTouch, decltype(after.kick)>{
-                                         owned, after, in_touch, reference});
+        const FaceContactPush<Shape, InTouch, decltype(after.kick)> push{owned, listed, after,
+                                                                         in_touch, reference};
+        if (part.exec.space != Space::host) return sum.add(listed.size, push);
+        contacts = push.at_once([&part](const auto& elsewhere, Index count) {
+          run_couples_elsewhere(part, elsewhere, count);
+        });
       });
     }
-    sum.add(part.couples.size(),
+    sum.add(listed.size,
             PlatenPush<Shape, decltype(couples), decltype(moves)>{
-                owned, axis, part.next_dt, state.velocity, state.share * servo.speed,
+                owned, listed, axis, part.next_dt, state.velocity, state.share * servo.speed,
                 target_of(part, config) < 0.0 ? -1.0 : 1.0, led, couples, moves, reference});
   }
-  return sum.sum();
+  return sum.sum() + contacts;
 }
 
 /// Whether a plate must know what acts on elements that other ranks own.

@@ -202,14 +202,8 @@ struct JointForces {
     gather_records(bonds, loaded.law, bond);
     offset_of(i, offset);
     const JointOpening<R> now = opening<R>(loaded, 0.0), before = opening<R>(loaded, dt);
-    const R slope = bond[0] / loaded.length, cohesion = bond[2] * loaded.strength;
-    R sum = constant<R>(0.0);
-    for (int q = 0; q < 3; ++q)
-      sum = sum + weight_of(q) *
-                      spent_by_pressure<R>(slope, cohesion, bond[3],
-                                           {before.open[q] + offset[0], now.open[q] + offset[0]},
-                                           {before.slide[q] + offset[1], now.slide[q] + offset[1]});
-    sum = loaded.length * sum;
+    const R sum = spent_by_pressures<R>(bond[0] / loaded.length, bond[2] * loaded.strength, bond[3],
+                                        loaded.length, before, now, offset);
     if constexpr (width_of<R> == 1) {
       work[i].slide += sum;
     } else {
@@ -217,6 +211,23 @@ struct JointForces {
         if ((drags >> k & 1U) != 0) work[i + k].slide += sum[k];
     }
   }
+
+  /// That work of a joint.  [J/m]
+  /// @param slope  p_f / h  [Pa/m]  @param cohesion  of this joint  [Pa]  @param h  its length  [m]
+  template <class R>
+  BR_HD static R spent_by_pressures(const R& slope, const R& cohesion, const R& friction,
+                                    const R& h, const JointOpening<R>& before,
+                                    const JointOpening<R>& now, const R (&offset)[2]) {
+    R sum = constant<R>(0.0);
+    for (int q = 0; q < 3; ++q)
+      sum = sum + weight_of(q) *
+                      spent_by_pressure<R>(slope, cohesion, friction,
+                                           {before.open[q] + offset[0], now.open[q] + offset[0]},
+                                           {before.slide[q] + offset[1], now.slide[q] + offset[1]});
+    return h * sum;
+  }
+  /// Weight of an integration point in a mean.  [-]
+  BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
 
  private:
   /// Whether the force of its last evaluation is other than zero.
@@ -329,9 +340,6 @@ struct JointForces {
     }
     for (int c = 0; c < 3; ++c) start[c] = pack_of<R>(own[c]);
   }
-  /// Weight of an integration point in a mean.  [-]
-  BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
-
   /// Lets all points of a joint fail where the mean stress of the rock there fails near its edge.
   /// @param bond_traction  of its points by the law of edges
   /// @returns false where it does not fail: `state` and `bond_traction` are those of this step then

@@ -39,6 +39,14 @@ LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index en
   return run_whole(kernel, begin, end, books);
 }
 
+[[gnu::flatten]] unsigned BR_PACKS::run(const JointForces<double>& kernel,
+                                        const AlikeJoints& pack) {
+  return run_alike<WidestPack>(kernel, pack);
+}
+[[gnu::flatten]] unsigned BR_PACKS::run(const JointForces<float>& kernel, const AlikeJoints& pack) {
+  return run_alike<WidestPack>(kernel, pack);
+}
+
 Index BR_PACKS::run(const TriangleForces<double>& kernel, Index begin, Index end) {
   return run_all(kernel, begin, end);
 }
@@ -56,9 +64,7 @@ Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end)
 [[gnu::flatten]] MovedTo BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
   for (; moved.end + width <= end; moved.end += width) {
-    const Moved pack = run_at<WidestPack>(kernel, moved.end);
-    if (pack == Moved::left) break;
-    if (pack == Moved::beyond) moved.beyond = true;
+    if (run_at<WidestPack>(kernel, moved.end) == Moved::beyond) moved.beyond = true;
   }
   return moved;
 }

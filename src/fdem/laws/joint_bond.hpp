@@ -11,6 +11,23 @@ namespace breccia::fdem {
 /// energy. The literature's 3 gives 15.9 % more (docs/theory-fdem.md, 2).
 inline constexpr double exact_softening_factor = 2.588612779530447;
 
+/// A number of this size with the sign of another one: copysign(), of packs, too.
+template <class R>
+BR_HD R signed_as(const R& size, const R& other) {
+  if constexpr (width_of<R> == 1) {
+    return copysign(size, other);
+  } else {
+    typename TypesOf<R>::Bits bits, of_other;
+    __builtin_memcpy(&bits, &size, sizeof bits);
+    __builtin_memcpy(&of_other, &other, sizeof of_other);
+    constexpr std::uint64_t sign = std::uint64_t{1} << 63;
+    bits = (bits & ~sign) | (of_other & sign);
+    R result;
+    __builtin_memcpy(&result, &bits, sizeof result);
+    return result;
+  }
+}
+
 /// exp(-t) for 0 <= t <= 4, to 1e-15: only + and *, so that every machine gives the same bits.
 template <class R>
 BR_HD R decay(const R& t) {
@@ -34,24 +51,26 @@ BR_HD R softening(const R& damage) {
 }
 
 /// Strength of the joints of a pair of materials. Twelve numbers side by side: packs gather them.
-struct JointBond {
-  double stiffness;        ///< p_f, initial tangent times length  [Pa]
-  double tension;          ///< f_t  [Pa]
-  double cohesion;         ///< c  [Pa]
-  double friction;         ///< tan phi_i  [-]
-  double softening_open;   ///< o_t f_t = factor G_I  [J/m2]
-  double softening_slide;  ///< s_t f_s = factor G_II  [J/m2]
-  double reversible;   ///< 1: unloading goes back along the curve, as in the classical codes, which
-                       ///< heals and can create energy; 0: along the secant  [-]
-  double residual;     ///< tan phi_r <= tan phi_i: friction kept while a pressed joint softens  [-]
-  double young = 0.0;  ///< E' of the rock beside it, in its plane; 0: the joint fails by its own
-                       ///< tractions alone, as edges do  [Pa]
-  double poisson = 0.0;  ///< nu' of that rock, in its plane  [-]
-  double skew = 0.0;     ///< of bedded rock: stress along the edge by a shear of 1 Pa  [-]
-  double unused = 0.0;
+template <class R>
+struct BondOf {
+  R stiffness;        ///< p_f, initial tangent times length  [Pa]
+  R tension;          ///< f_t  [Pa]
+  R cohesion;         ///< c  [Pa]
+  R friction;         ///< tan phi_i  [-]
+  R softening_open;   ///< o_t f_t = factor G_I  [J/m2]
+  R softening_slide;  ///< s_t f_s = factor G_II  [J/m2]
+  R reversible;       ///< 1: unloading goes back along the curve, as in the classical codes, which
+                      ///< heals and can create energy; 0: along the secant  [-]
+  R residual;         ///< tan phi_r <= tan phi_i: friction kept while a pressed joint softens  [-]
+  R young{};          ///< E' of the rock beside it, in its plane; 0: the joint fails by its own
+                      ///< tractions alone, as edges do  [Pa]
+  R poisson{};        ///< nu' of that rock, in its plane  [-]
+  R skew{};           ///< of bedded rock: stress along the edge by a shear of 1 Pa  [-]
+  R unused{};
 
-  BR_HD bool by_rock() const { return young > 0.0; }
+  BR_HD auto by_rock() const { return young > 0.0; }
 };
+using JointBond = BondOf<double>;
 
 /// How the rock failed at a joint (laws/rock_failure.hpp). none: it has not.
 enum class Failure : std::uint8_t { none, torn, sheared };
@@ -135,10 +154,9 @@ BR_HD R spent_by_pressure(const R& slope, const R& cohesion, const R& friction,
 
 /// The law in full while the rock has not failed. @param strength  of this joint over its law's:
 /// scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial length  [m]
-BR_HD inline BondTraction<double> edge_response(const JointBond& law, double strength, double h,
-                                                double opening, double slip,
-                                                BondState<double>& state) {
-  using R = double;
+template <class R>
+BR_HD BondTraction<R> edge_response(const BondOf<R>& law, const R& strength, const R& h,
+                                    const R& opening, const R& slip, BondState<R>& state) {
   const R zero = constant<R>(0.0), one = constant<R>(1.0);
   const R tension = law.tension * strength;
   const auto pressed = opening < 0.0;
@@ -151,20 +169,18 @@ BR_HD inline BondTraction<double> edge_response(const JointBond& law, double str
 
   // Damage.
   R health = one;
-  const bool reversible = law.reversible > 0.5;
-  const auto beyond = over_o > 0.0 || over_s > 0.0;
-  if (any(beyond || state.damage > 0.0)) {
+  const auto reversible = law.reversible > 0.5;
+  const auto softens = over_o > 0.0 || over_s > 0.0 || state.damage > 0.0;
+  if (any(softens)) {
     const R open = over_o * (tension / (law.softening_open * strength));
     const R slide = over_s * (shear_strength / (law.softening_slide * strength));
     const R now = min(one, sqrt(open * open + slide * slide));
     state.damage = max(state.damage, now);
-    const R counted = reversible ? now : state.damage;
-    health = softening(counted);
+    health = select(softens, softening(select(reversible, now, state.damage)), one);
   }
-  if (!reversible) {
-    state.opening = select(over_o > 0.0, max(state.opening, opening), state.opening);
-    state.slip = select(over_s > 0.0, max(state.slip, slid), state.slip);
-  }
+  const auto one_way = !reversible;
+  state.opening = select(one_way && over_o > 0.0, max(state.opening, opening), state.opening);
+  state.slip = select(one_way && over_s > 0.0, max(state.slip, slid), state.slip);
 
   // Tractions.
   BondTraction<R> t;
@@ -185,19 +201,27 @@ BR_HD inline BondTraction<double> edge_response(const JointBond& law, double str
 
 /// Of the shear traction of a point whose state follows from its opening and slip, what residual
 /// friction bears, (1 - z) |sigma| tan phi_r at full slip, with the sign of the slip.  [Pa]
-BR_HD inline double edge_friction(const JointBond& law, double strength, double h, double opening,
-                                  double slip, const BondState<double>& state) {
-  if (!(opening < 0.0 && state.damage > 0.0)) return 0.0;
-  const double pressure = (law.stiffness / h) * opening, slid = abs(slip);
-  const double shear_strength = law.cohesion * strength - law.friction * pressure;
-  const double s_p = (2.0 / law.stiffness) * h * shear_strength;
-  double damage = state.damage;
-  if (law.reversible > 0.5)
-    damage = min(1.0, max(0.0, slid - s_p) * shear_strength / (law.softening_slide * strength));
-  const double q = slid / (s_p > 0.0 ? s_p : 1.0);
-  double drag = slid <= s_p ? 2.0 * q - q * q : 1.0;
-  if (state.slip > 0.0) drag = min(1.0, slid / max(state.slip, s_p));
-  return copysign((1.0 - softening(damage)) * -law.residual * pressure * drag, slip);
+template <class R>
+BR_HD R edge_friction(const BondOf<R>& law, const R& strength, const R& h, const R& opening,
+                      const R& slip, const BondState<R>& state) {
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  const auto rubs = opening < 0.0 && state.damage > 0.0;
+  if (!any(rubs)) return zero;
+  const R pressure = (law.stiffness / h) * opening, slid = abs(slip);
+  const R shear_strength = law.cohesion * strength - law.friction * pressure;
+  const R s_p = (2.0 / law.stiffness) * h * shear_strength;
+  R damage = state.damage;
+  const auto reversible = law.reversible > 0.5;
+  if (any(reversible))
+    damage =
+        select(reversible,
+               min(one, max(zero, slid - s_p) * shear_strength / (law.softening_slide * strength)),
+               damage);
+  const R q = slid / select(s_p > zero, s_p, one), reach = max(state.slip, s_p);
+  R drag = select(slid <= s_p, 2.0 * q - q * q, one);
+  drag = select(state.slip > 0.0, min(one, slid / select(reach > zero, reach, one)), drag);
+  return select(rubs, signed_as((1.0 - softening(damage)) * -law.residual * pressure * drag, slip),
+                zero);
 }
 
 /// Energy that a point would give back, by direction.  [J/m2]

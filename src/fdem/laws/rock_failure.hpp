@@ -33,9 +33,11 @@ inline constexpr double torn_at_all = 0.25;
 inline constexpr double sheared_at_all = 0.6427876096865394;
 
 /// Stress of the rock at a joint, tension positive.  [Pa]
-struct RockStress {
-  double normal, shear, along;  ///< across the edge, in it, and along it
+template <class R>
+struct RockStressOf {
+  R normal, shear, along;  ///< across the edge, in it, and along it
 };
+using RockStress = RockStressOf<double>;
 
 /// Stress along an edge from its stretch, which both sides share:
 ///   sigma_l = E' (|e|/h - 1) + nu' (sigma_n - S0_nn) + skew (tau - S0_ln) + S0_ll
@@ -66,29 +68,39 @@ BR_HD auto may_fail(const R& tension, const R& cohesion, const R& friction, cons
 }
 
 /// Stress over strength.  [-]
-struct RockFailure {
-  double torn, sheared;
-  BR_HD double most() const { return max(torn, sheared); }
+template <class R>
+struct RockFailureOf {
+  R torn, sheared;
+  BR_HD R most() const { return max(torn, sheared); }
 };
+using RockFailure = RockFailureOf<double>;
 
 /// How far the rock is from failure on a plane near this edge. With theta between its normal and
 /// the direction of sigma_1, C and radius those of Mohr's circle:
 ///   torn     sigma_n/f_t, or, if sigma_n > 0, sigma_1 min(1, cos^2 theta/cos^2 35 deg)/f_t
 ///   sheared  (C tan phi + radius/cos phi)/c, if the edge is within 25 degrees of a plane that
 ///   slides
-BR_HD inline RockFailure rock_failure(const JointBond& law, double strength, const RockStress& s) {
-  const double tension = law.tension * strength, cohesion = law.cohesion * strength;
-  const double centre = 0.5 * (s.normal + s.along), half = 0.5 * (s.normal - s.along);
-  const double radius = sqrt(half * half + s.shear * s.shear);
-  RockFailure f{s.normal / tension, 0.0};
-  if (!(radius > 0.0)) return f;
-  const double cos2 = 0.5 + 0.5 * half / radius;  // of theta
-  if (s.normal > 0.0 && cos2 >= torn_at_all)
-    f.torn = max(f.torn, (centre + radius) * min(1.0, cos2 / torn_in_full) / tension);
-  const double reach = radius * sqrt(1.0 + law.friction * law.friction);
-  const double middle = centre * law.friction;
-  const double own = abs(s.shear) + s.normal * law.friction;  // less middle: reach cos(2 angle)
-  if (own > 0.0 && own - middle >= sheared_at_all * reach) f.sheared = (middle + reach) / cohesion;
+template <class R>
+BR_HD RockFailureOf<R> rock_failure(const BondOf<R>& law, const R& strength,
+                                    const RockStressOf<R>& s) {
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  const R tension = law.tension * strength, cohesion = law.cohesion * strength;
+  const R centre = 0.5 * (s.normal + s.along), half = 0.5 * (s.normal - s.along);
+  const R radius = sqrt(half * half + s.shear * s.shear);
+  RockFailureOf<R> f{s.normal / tension, zero};
+  const auto differs = radius > 0.0;
+  if (!any(differs)) return f;
+  const R cos2 = 0.5 + 0.5 * half / select(differs, radius, one);  // of theta
+  const auto tears = differs && s.normal > 0.0 && cos2 >= torn_at_all;
+  if (any(tears))
+    f.torn = select(tears, max(f.torn, (centre + radius) * min(one, cos2 / torn_in_full) / tension),
+                    f.torn);
+  const R reach = radius * sqrt(1.0 + law.friction * law.friction);
+  const R middle = centre * law.friction;
+  const R own = abs(s.shear) + s.normal * law.friction;  // less middle: reach cos(2 angle)
+  const auto slides = differs && own > 0.0 && own - middle >= sheared_at_all * reach;
+  if (any(slides))
+    f.sheared = select(slides, (middle + reach) / select(slides, cohesion, one), zero);
   return f;
 }
 
@@ -135,89 +147,109 @@ BR_HD inline void fail(const JointBond& law, double strength, double h, Failure 
 /// that only followed |s| would give energy whenever pressure and slip take turns: joints of steep
 /// friction would feed themselves and all around them.
 /// @param z  what the point keeps of phi; phi_r is the rest  [-]
-BR_HD inline double friction_traction(const JointBond& law, double slope, double pressure, double z,
-                                      double slip, double& stuck) {
-  const double most = -pressure * (z * law.friction + (1.0 - z) * law.residual);
-  const double friction = max(-most, min(most, slope * (slip - stuck)));
+template <class R>
+BR_HD R friction_traction(const BondOf<R>& law, const R& slope, const R& pressure, const R& z,
+                          const R& slip, R& stuck) {
+  const R most = -pressure * (z * law.friction + (1.0 - z) * law.residual);
+  const R friction = max(-most, min(most, slope * (slip - stuck)));
   stuck = slip - friction / slope;
   return friction;
 }
 
+template <class R>
 struct FailedTraction {
-  double normal, kept, friction;  ///< the last two along the slip  [Pa]
+  R normal, kept, friction;  ///< the last two along the slip  [Pa]
 };
 /// Torn (above). Pressed again it rubs by phi, fading to phi_r.
-BR_HD inline FailedTraction torn_traction(const JointBond& law, double h, double opening,
-                                          double slip, BondState<double>& state) {
-  const double slid = abs(slip), slope = law.stiffness / h;
-  const double open = max(0.0, opening - state.opened), slide = max(0.0, slid - state.slid);
-  const double per_length = law.tension / law.softening_open;  // 1/o_t
-  state.damage = max(state.damage, min(1.0, per_length * sqrt(open * open + slide * slide)));
+template <class R>
+BR_HD FailedTraction<R> torn_traction(const BondOf<R>& law, const R& h, const R& opening,
+                                      const R& slip, BondState<R>& state) {
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  const R slid = abs(slip), slope = law.stiffness / h;
+  const R open = max(zero, opening - state.opened), slide = max(zero, slid - state.slid);
+  const R per_length = law.tension / law.softening_open;  // 1/o_t
+  state.damage = max(state.damage, min(one, per_length * sqrt(open * open + slide * slide)));
   state.opening = max(state.opening, opening);
   state.slip = max(state.slip, slid);
-  const double z = softening(state.damage), pressure = slope * min(0.0, opening);
-  FailedTraction t{};
-  t.normal = opening < 0.0 ? pressure : z * state.normal * min(1.0, opening / state.opening);
-  t.kept = copysign(z * state.shear * min(1.0, slid / state.slip), slip);
+  const R z = softening(state.damage), pressure = slope * min(zero, opening);
+  FailedTraction<R> t{};
+  t.normal = select(opening < 0.0, pressure, z * state.normal * min(one, opening / state.opening));
+  t.kept = signed_as(z * state.shear * min(one, slid / state.slip), slip);
   t.friction = friction_traction(law, slope, pressure, z, slip, state.stuck);
   return t;
 }
 
 /// Sheared (above).
-BR_HD inline FailedTraction sheared_traction(const JointBond& law, double strength, double h,
-                                             double opening, double slip,
-                                             BondState<double>& state) {
-  const double slid = abs(slip), slope = law.stiffness / h, tension = law.tension * strength;
-  const double o_p = 2.0 * tension / slope, pressure = slope * min(0.0, opening);
-  const double resists = state.shear - law.friction * pressure, yield = resists * state.slid;
-  const double over_o = max(0.0, opening - o_p), over_s = max(0.0, slid - yield);
-  if (over_o > 0.0) state.opening = max(state.opening, opening);
+template <class R>
+BR_HD FailedTraction<R> sheared_traction(const BondOf<R>& law, const R& strength, const R& h,
+                                         const R& opening, const R& slip, BondState<R>& state) {
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  const R slid = abs(slip), slope = law.stiffness / h, tension = law.tension * strength;
+  const R o_p = 2.0 * tension / slope, pressure = slope * min(zero, opening);
+  const R resists = state.shear - law.friction * pressure, yield = resists * state.slid;
+  const R over_o = max(zero, opening - o_p), over_s = max(zero, slid - yield);
+  state.opening = select(over_o > 0.0, max(state.opening, opening), state.opening);
   state.slip = max(state.slip, slid);
-  const double x = over_o * law.tension / law.softening_open;
-  const double y = over_s * resists / (law.softening_slide * strength);
-  state.damage = max(state.damage, min(1.0, sqrt(x * x + y * y)));
-  const double z = softening(state.damage), r = opening / o_p;
-  double pull = r < 1.0 ? 2.0 * r - r * r : 1.0;
-  if (state.opening > 0.0) pull = opening / state.opening;
-  FailedTraction t{};
-  t.normal = opening < 0.0 ? pressure : z * tension * pull;
-  t.kept = copysign(z * state.shear * min(1.0, slid / state.slip), slip);
+  const R x = over_o * law.tension / law.softening_open;
+  const R y = over_s * resists / (law.softening_slide * strength);
+  state.damage = max(state.damage, min(one, sqrt(x * x + y * y)));
+  const R z = softening(state.damage), r = opening / o_p;
+  const auto opened = state.opening > 0.0;
+  R pull = select(r < 1.0, 2.0 * r - r * r, one);
+  pull = select(opened, opening / select(opened, state.opening, one), pull);
+  FailedTraction<R> t{};
+  t.normal = select(opening < 0.0, pressure, z * tension * pull);
+  t.kept = signed_as(z * state.shear * min(one, slid / state.slip), slip);
   t.friction = friction_traction(law, slope, pressure, z, slip, state.stuck);
   return t;
 }
 
-/// Of a point that has failed, torn or sheared.
-BR_HD inline FailedTraction failed_traction(const JointBond& law, double strength, double h,
-                                            double opening, double slip, BondState<double>& state) {
-  return failure_of(state) == Failure::torn
-             ? torn_traction(law, h, opening, slip, state)
-             : sheared_traction(law, strength, h, opening, slip, state);
+/// Of a point that has failed, torn or sheared; of several that have failed alike.
+template <class R>
+BR_HD FailedTraction<R> failed_traction(Failure how, const BondOf<R>& law, const R& strength,
+                                        const R& h, const R& opening, const R& slip,
+                                        BondState<R>& state) {
+  return how == Failure::torn ? torn_traction(law, h, opening, slip, state)
+                              : sheared_traction(law, strength, h, opening, slip, state);
 }
 
-/// The law in full, of an integration point of either criterion. @param strength  of this joint
-/// over its law's: scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial
-/// length [m]
+/// The law in full, of an integration point of either criterion, or of several that have failed
+/// alike. @param how  they have failed  @param strength  of this joint over its law's: scales f_t,
+/// c and, so that lengths stay, both energies  [-]. @param h  initial length [m]
+template <class R>
+BR_HD BondTraction<R> response(Failure how, const BondOf<R>& law, const R& strength, const R& h,
+                               const R& opening, const R& slip, BondState<R>& state) {
+  if (how == Failure::none) return edge_response(law, strength, h, opening, slip, state);
+  const FailedTraction<R> t = failed_traction(how, law, strength, h, opening, slip, state);
+  return {t.normal, t.kept + t.friction};
+}
 BR_HD inline BondTraction<double> response(const JointBond& law, double strength, double h,
                                            double opening, double slip, BondState<double>& state) {
-  if (failure_of(state) == Failure::none)
-    return edge_response(law, strength, h, opening, slip, state);
-  const FailedTraction t = failed_traction(law, strength, h, opening, slip, state);
-  return {t.normal, t.kept + t.friction};
+  return response(failure_of(state), law, strength, h, opening, slip, state);
 }
 
 /// Of the friction of a pressed point that has failed, the share of phi_r.  [-]
-BR_HD inline double residual_share(const JointBond& law, const BondState<double>& state) {
-  const double z = softening(state.damage), rest = (1.0 - z) * law.residual;
-  return rest > 0.0 ? rest / (z * law.friction + rest) : 0.0;
+template <class R>
+BR_HD R residual_share(const BondOf<R>& law, const BondState<R>& state) {
+  const R z = softening(state.damage), rest = (1.0 - z) * law.residual;
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  return select(rest > 0.0, rest / select(rest > 0.0, z * law.friction + rest, one), zero);
 }
 /// Of the shear traction of a point whose state follows from its opening and slip, what residual
 /// friction bears, with the sign of the slip.  [Pa]
+template <class R>
+BR_HD R residual_traction(Failure how, const BondOf<R>& law, const R& strength, const R& h,
+                          const R& opening, const R& slip, const BondState<R>& state) {
+  if (how == Failure::none) return edge_friction(law, strength, h, opening, slip, state);
+  const R zero = constant<R>(0.0);
+  const auto pressed = opening < 0.0;
+  if (!any(pressed)) return zero;
+  return select(pressed, residual_share(law, state) * (law.stiffness / h) * (slip - state.stuck),
+                zero);
+}
 BR_HD inline double residual_traction(const JointBond& law, double strength, double h,
                                       double opening, double slip, const BondState<double>& state) {
-  if (failure_of(state) == Failure::none)
-    return edge_friction(law, strength, h, opening, slip, state);
-  if (!(opening < 0.0)) return 0.0;
-  return residual_share(law, state) * (law.stiffness / h) * (slip - state.stuck);
+  return residual_traction(failure_of(state), law, strength, h, opening, slip, state);
 }
 
 /// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
@@ -226,7 +258,8 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   if (failure_of(state) == Failure::none)
     return edge_stored(law, strength, h, opening, slip, state);
   BondState<double> same = state;
-  const FailedTraction t = failed_traction(law, strength, h, opening, slip, same);
+  const FailedTraction<double> t =
+      failed_traction(failure_of(state), law, strength, h, opening, slip, same);
   const double spring = 0.5 * t.friction * t.friction * h / law.stiffness;
   return {0.5 * t.normal * opening, 0.5 * t.kept * slip + spring,
           spring > 0.0 ? residual_share(law, same) * spring : 0.0};

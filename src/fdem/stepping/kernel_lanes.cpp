@@ -19,19 +19,74 @@ Index while_whole([[maybe_unused]] Lanes lanes, const JointForces<Number>& joint
   return begin;
 }
 
+#if defined(BR_WIDE_LANES)
+/// Joints that packs of neighbours have left wait until those that are alike fill a pack.
+template <class Number>
+class LeftOver {
+ public:
+  LeftOver(Lanes lanes, const JointForces<Number>& joints) : lanes_(lanes), joints_(joints) {}
+
+  void take(Index i) {
+    const bool whole = joints_.stage[i] == JointStage::whole;
+    if (!whole && joints_.stage[i] != JointStage::softened) return joints_.slow(i);
+    Failure how = Failure::none;
+    if (!whole) {
+      const JointPoints& points = joints_.points[i];
+      how = failure_of(points.point[0]);
+      for (int q = 1; q < 3; ++q)
+        if (failure_of(points.point[q]) != how) return joints_.slow(i);
+    }
+    // It may ask for the stress at the start, which differs from place to place.
+    if (how == Failure::none && joints_.graded.size > 0) return joints_.slow(i);
+    AlikeJoints& pack = packs_[whole ? 3 : static_cast<int>(how)];
+    pack.whole = whole;
+    pack.how = how;
+    pack.joint[pack.count++] = i;
+    if (pack.count == width()) run(pack);
+  }
+  /// Those that still wait.
+  void finish() {
+    for (AlikeJoints& pack : packs_) {
+      if (pack.count == 0) continue;
+      for (Index k = pack.count; k < width(); ++k) pack.joint[k] = pack.joint[0];
+      run(pack);
+    }
+  }
+
+ private:
+  Index width() const { return static_cast<Index>(lanes_); }
+  void run(AlikeJoints& pack) {
+    const Index count = pack.count;
+    unsigned left = (1U << count) - 1U;
+    if (count > 1)
+      left =
+          lanes_ == Lanes::eight ? PacksAvx512::run(joints_, pack) : PacksAvx2::run(joints_, pack);
+    pack.count = 0;
+    for (Index k = 0; k < count; ++k)
+      if ((left >> k & 1U) != 0) joints_.slow(pack.joint[k]);
+  }
+
+  Lanes lanes_;
+  const JointForces<Number>& joints_;
+  AlikeJoints packs_[4];  ///< by Failure; whole ones
+};
+#endif
+
 template <class Number>
 void run_joints([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints, Index begin,
                 Index end) {
 #if defined(BR_WIDE_LANES)
+  LeftOver<Number> others(lanes, joints);
   for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
     const LeftJoints left = lanes == Lanes::eight ? PacksAvx512::run(joints, begin, end, true)
                                                   : PacksAvx2::run(joints, begin, end, true);
     begin = left.first;
     if (left.others == 0) break;
     for (Index k = 0; k < width; ++k)
-      if ((left.others >> k & 1U) != 0) joints.slow(begin + k);
+      if ((left.others >> k & 1U) != 0) others.take(begin + k);
     begin += width;
   }
+  others.finish();
 #endif
   for (; begin < end; ++begin) joints(begin);
 }

@@ -3,6 +3,7 @@
 
 #include "exec/lanes.hpp"
 #include "fdem/contact/couples.hpp"
+#include "fdem/joints/joint_lanes.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
 
 namespace breccia::fdem {
@@ -38,9 +39,12 @@ Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Inde
 /// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
 /// on every processor; of a pack of joints only the others. Without `books` they stop at joints
 /// that slip under pressure, too: the length of the step is not known yet.
+/// Joints that are alike by packs of their own: run_alike().
 struct PacksAvx2 {
   static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
   static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end, bool books);
+  static unsigned run(const JointForces<double>& kernel, const AlikeJoints& pack);
+  static unsigned run(const JointForces<float>& kernel, const AlikeJoints& pack);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
@@ -50,6 +54,8 @@ struct PacksAvx2 {
 struct PacksAvx512 {
   static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
   static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end, bool books);
+  static unsigned run(const JointForces<double>& kernel, const AlikeJoints& pack);
+  static unsigned run(const JointForces<float>& kernel, const AlikeJoints& pack);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);

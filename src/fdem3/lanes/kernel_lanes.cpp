@@ -29,9 +29,7 @@ constexpr Index width = width_of<WidestPack>;
 [[gnu::flatten]] MovedTo BR_PACKS::run(const MoveTetrahedra& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
   for (; moved.end + width <= end; moved.end += width) {
-    const fdem_shared::Moved pack = run_at<WidestPack>(kernel, moved.end);
-    if (pack == fdem_shared::Moved::left) break;
-    if (pack == fdem_shared::Moved::beyond) moved.beyond = true;
+    if (run_at<WidestPack>(kernel, moved.end) == fdem_shared::Moved::beyond) moved.beyond = true;
   }
   return moved;
 }

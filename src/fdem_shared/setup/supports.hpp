@@ -251,6 +251,7 @@ void hold_anew(World& w, const Config& config) {
   copy_to(ids, e.id);
   for (const Index id : ids) own.push_back(hold[at(id)]);
   copy_to(e.hold, own);
+  w.held_couples.known = false;
 }
 
 }  // namespace breccia::fdem_shared
