@@ -149,7 +149,9 @@ PULLED = [({}, 6), (SHORT, range(7, 13)), ({"damping": 0.0}, 6), ({"damping": 0.
           ({"periodic": "z"}, 6), ({"damping": 0.05, "periodic": "z"} | SHORT, 6), ({"damping": 0.05, "fix": "all"} | SHORT, 6), ({"fabric": "packed"}, 6), ({"fabric": "packed", "damping": 0.05} | SHORT, 6),
           ({"fabric": "even"}, 4), ({"fabric": "even", "damping": 0.05} | SHORT, 6), *(({"elements": 1200, "damping": damping} | SHORT, 6) for damping in (0.3, 0.05, 0.0)),
           *((AS_TESTED | {"damping": damping, "rate": rate}, 4) for damping, rate in ((0.3, 1), (0.3, 0.25), (0.05, 1), (0.05, 0.25), (0.0, 1))), *((AS_TESTED | {"elements": 2400, "damping": d}, 4) for d in (0.3, 0.05))]
-DAMPED = [("compression_prism", damping, rate) for damping in (0.3, 0.05) for rate in (1, 0.25)] + [(test, damping, 1) for test in ("brazilian", "tension_notched") for damping in (0.3, 0.05)]
+DAMPED = [("compression_prism", damping, rate, 1200, (1, 2, 3)) for damping in (0.3, 0.05) for rate in (1, 0.25)]
+DAMPED += [(test, damping, 1, 1200, (1, 2, 3)) for test in ("brazilian", "tension_notched") for damping in (0.3, 0.05)]
+DAMPED += [("compression_prism", 0.0, 1, n, (5, 6, 7)) for n in (600, 1200, 2400, 4800)] + [("tension", 0.0, 1, n, (5, 6, 7)) for n in (600, 1200, 2400)]  # as library.csv has with 0.3
 RECORD = ["setting", "seed", "commit", "device", "hash", "quantity", "value"]
 
 
@@ -225,15 +227,16 @@ def lines(setting, seed, summary, found):
     return [dict(zip(RECORD, (*about, quantity, f"{value:.9g}"))) for quantity, value in found.items()]
 
 
-def damp(test, damping, rate, seed, given):
+def damp(test, damping, rate, elements, seed, given):
     """A specimen of `breccia test` with C30."""
-    folder = given.out / f"damped-{test}-{damping}-{rate}-{seed}"
+    folder = given.out / f"damped-{test}-{damping}-{rate}-{elements}-{seed}"
     if not (folder / "summary.json").exists():
-        made, case = given.out / f"made-{test}-{seed}", given.out / "c30.toml"
+        made, case = given.out / f"made-{test}-{elements}-{seed}", given.out / "c30.toml"
         case.write_text('breccia = 1\nmethod = "dem3d"\n[time]\nend = 1e-3\n[links]\nrange = 1.443\n[material.c]\nuse = "C30"\n'
                         '[[body]]\nname = "b"\nmaterial = "c"\nsize = [0.1, 0.1, 0.1]\npack = { count = 300, size_ratio = 2.0, compactness = 0.56 }\n')
         if not list(made.glob("cases/*.toml")):
-            subprocess.run([given.binary, "test", case, "--material", "c", "--only", test, "--first-seed", str(seed), "--seeds", "1", "--threads", "1", "-o", made], stdout=subprocess.DEVNULL)
+            subprocess.run([given.binary, "test", case, "--material", "c", "--only", test, "--first-seed", str(seed), "--seeds", "1", "--elements", str(elements),
+                            "--threads", "1", "-o", made], stdout=subprocess.DEVNULL)
         keys = [f"local_damping={damping}"]
         if rate != 1:  # 0.6/s and a ramp of a tenth of the time
             keys += [f"time.end={5e-3 / 0.6 / rate}", *(f"support.{name}.velocity=[0,0,{speed * rate}]" for name, speed in (("top", -0.06), ("bottom", 0.06))),
@@ -247,7 +250,7 @@ def damp(test, damping, rate, seed, given):
     found = {"strength": max(forces) / section / 1e6}
     if test == "tension_notched":
         found["fracture_energy"] = sum(float(rows[-1][name]) for name in ("fracture", "plastic", "friction")) / section
-    return lines({"test": test, "damping": damping, "rate": rate}, seed, json.loads((folder / "summary.json").read_text()), found)
+    return lines({"test": test, "damping": damping, "rate": rate} | ({"elements": elements} if elements != 1200 else {}), seed, json.loads((folder / "summary.json").read_text()), found)
 
 
 # Lines of the table of places.
@@ -299,7 +302,7 @@ def pulled_table(records, which):
 
 def pulled(given):
     jobs = [(pull, PLAIN | setting, seed, given) for setting, seeds in PULLED for seed in (range(1, seeds + 1) if isinstance(seeds, int) else seeds)]
-    jobs += [(damp, *setting, seed, given) for setting in DAMPED for seed in (1, 2, 3)]
+    jobs += [(damp, *setting, seed, given) for *setting, seeds in DAMPED for seed in seeds]
     jobs = [job for job in jobs if given.only in str(job[1:-1])]
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         records = [line for task in [pool.submit(*job) for job in jobs] for line in task.result()]
