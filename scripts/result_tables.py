@@ -140,7 +140,7 @@ def main():
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
     tables, stale = 0, []
-    for page in [*sorted((ROOT / "docs").glob("*.md")), ROOT / "cases/rc_slab/README.md", ROOT / "README.md"]:
+    for page in [*sorted((ROOT / "docs").glob("*.md")), ROOT / "cases/rc_slab/README.md", ROOT / "cases/triaxial/README.md", ROOT / "README.md"]:
         text = page.read_text()
         made = remade(text, page.name)
         tables += len(PLACE.findall(text))
