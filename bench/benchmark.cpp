@@ -112,8 +112,10 @@ void report_slabs(const Exec& exec, int copies, int steps, std::vector<Measureme
   forget_peak_of_arrays(exec.space);                    // of scenes before
   if (exec.space == Space::cuda) return_free_memory();  // likewise
   dem::World w(exec);
-  const double setup = seconds_of(
-      [&] { w = dem::make_world(config, side_by_side(build_model(config, ""), copies), exec); });
+  const double setup = seconds_of([&] {
+    w = dem::make_world(config, side_by_side(build_model(config, "", exec), copies, exec.threads),
+                        exec);
+  });
   reach_impact(w);
   std::vector<double> wall;
   for (int window = 0; window < window_count; ++window)

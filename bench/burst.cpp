@@ -17,7 +17,7 @@ namespace {
 Buffer<Box> burst_slab(const Exec& exec, const dem::Model& slab, std::size_t stride,
                        double factor) {
   constexpr double margin = 5e-4;  // of a slab's elements at rest  [m]
-  std::vector<Vec3> centres = slab.position;
+  std::vector<Vec3> centres(slab.position.begin(), slab.position.end());
   for (std::size_t e = 0; e < centres.size(); e += stride) centres[e] = factor * centres[e];
   Buffer<Vec3> centre(exec.space);
   Buffer<double> radius(exec.space), margins(exec.space);

@@ -26,6 +26,7 @@ const std::vector<RankBenchmark>& rank_benchmarks() {
       {"weak_slabs", "as many of the paper's slabs for each rank", measure_weak_slabs},
       {"strong_slabs", "the same slabs shared by all ranks", measure_strong_slabs},
       {"weak_plate", "FDEM: as many joined triangles for each rank", measure_weak_plate},
+      {"set_up", "making a model of spheres and its world, part by part", measure_set_up},
       {"strong_plate", "FDEM: the same triangles shared by all ranks", measure_strong_plate}};
   return list;
 }

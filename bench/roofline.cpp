@@ -130,7 +130,8 @@ std::vector<Measurement> measure_roofline(const Exec& exec) {
   for (const int copies : {1, 70}) {
     dem::Config config = slab_scene(1.0);
     if (copies > 1) config.supports.clear();
-    dem::World w = dem::make_world(config, side_by_side(build_model(config, ""), copies), exec);
+    dem::World w = dem::make_world(
+        config, side_by_side(build_model(config, "", exec), copies, exec.threads), exec);
     report_kernels(std::to_string(copies) + " slabs", w, bandwidth, result);
   }
   for (const int count : {52'000, 1'000'000}) {

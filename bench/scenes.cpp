@@ -1,6 +1,11 @@
 #include "bench/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
+
+#include "dem/setup/model_arrays.hpp"
+#include "exec/tasks.hpp"
 
 namespace breccia {
 namespace {
@@ -91,41 +96,44 @@ fdem::Config granite() {
   return config;
 }
 
-dem::Model side_by_side(const dem::Model& one, int copies) {
-  return side_by_side(one, TileRun{0, copies, copies});
+dem::Model side_by_side(const dem::Model& one, int copies, int threads) {
+  return side_by_side(one, TileRun{0, copies, copies}, threads);
 }
 
-dem::Model side_by_side(const dem::Model& one, const TileRun& copies) {
+dem::Model side_by_side(const dem::Model& one, const TileRun& copies, int threads) {
   constexpr double pitch = 2.0;
   const auto row = static_cast<int>(std::lround(std::sqrt(copies.count)));
+  const int built = copies.last - copies.first;
+  const auto count = static_cast<std::size_t>(built);
   dem::Model all;
   all.groups = one.groups;
   all.interaction_range = one.interaction_range;
-  const auto append = [](auto& to, const auto& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  for (int copy = copies.first; copy < copies.last; ++copy) {
-    const Index first = all.size();
+  std::vector<const void*> sources;
+  dem::each_element_array(one, [&](const char*, const auto& items) { sources.push_back(&items); });
+  dem::each_element_array(
+      all, [&](const char*, auto& items) { items.resize(count * one.position.size()); });
+  all.links.resize(count * one.links.size());
+  for_each_task(threads, built, [&](int k) {
+    const int copy = copies.first + k;
+    const Index first = k * one.size();
     const Vec3 shift{pitch * (copy % row), pitch * (copy / row), 0.0};
-    append(all.group, one.group);
-    append(all.material, one.material);
-    append(all.radius, one.radius);
-    append(all.mass, one.mass);
-    append(all.inertia, one.inertia);
-    append(all.velocity, one.velocity);
-    append(all.spin, one.spin);
-    for (const Vec3& x : one.position) all.position.push_back(x + shift);
+    auto source = sources.begin();
+    dem::each_element_array(all, [&](const char*, auto& items) {
+      const auto& from = *static_cast<const std::remove_reference_t<decltype(items)>*>(*source++);
+      std::copy(from.begin(), from.end(), items.begin() + first);
+    });
+    for (Index e = first; e < first + one.size(); ++e) {
+      all.position[at(e)] += shift;
+      for (Index* along : {&all.bar_previous[at(e)], &all.bar_next[at(e)]})
+        if (*along >= 0) *along += first;
+    }
+    auto to = all.links.begin() + static_cast<std::ptrdiff_t>(at(k) * one.links.size());
     for (dem::Model::Link link : one.links) {
       link.a += first;
       link.b += first;
-      all.links.push_back(link);
+      *to++ = link;
     }
-    const auto follow = [&](std::vector<Index>& to, const std::vector<Index>& from) {
-      for (const Index e : from) to.push_back(e >= 0 ? e + first : -1);
-    };
-    follow(all.bar_previous, one.bar_previous);
-    follow(all.bar_next, one.bar_next);
-  }
+  });
   return all;
 }
 

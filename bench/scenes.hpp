@@ -23,9 +23,9 @@ struct TileRun {
 };
 
 /// So many copies of a model in rows, 2 m apart.
-dem::Model side_by_side(const dem::Model& one, int copies);
+dem::Model side_by_side(const dem::Model& one, int copies, int threads = 1);
 /// Only those of them that a rank builds.
-dem::Model side_by_side(const dem::Model& one, const TileRun& copies);
+dem::Model side_by_side(const dem::Model& one, const TileRun& copies, int threads = 1);
 
 /// Granite, as in cases/brazilian_disc. Laws stay as they are here, so that numbers compare over
 /// time.

@@ -283,10 +283,11 @@ dem::World tiled_slabs(dem::Config config, int count, Communicator* ranks, const
   const TileRun tiles = tiles_of(count, ranks);
   dem::World w(on_host(exec));
   collective_try(ranks, [&] {
-    const dem::Model slab = build_model(config, "");
+    const dem::Model slab = build_model(config, "", exec);
     // A rank without tiles makes one for what all ranks know alike.
     const int first = std::min(tiles.first, count - 1), built = std::max(1, tiles.last - first);
-    w = dem::make_world(config, side_by_side(slab, TileRun{first, first + built, count}),
+    w = dem::make_world(config,
+                        side_by_side(slab, TileRun{first, first + built, count}, exec.threads),
                         on_host(exec));
     w.given.change(SetUp{}).mean_radius =
         std::accumulate(slab.radius.begin(), slab.radius.end(), 0.0) /

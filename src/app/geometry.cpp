@@ -134,8 +134,8 @@ Geometry of_model(const std::string& path) {
     return g;
   }
   const dem::Model model = load_model(reader);
-  g.center = model.position;
-  g.radius = model.radius;
+  g.center.assign(model.position.begin(), model.position.end());
+  g.radius.assign(model.radius.begin(), model.radius.end());
   g.groups = model.groups;
   g.group.assign(model.group.begin(), model.group.end());
   return g;

@@ -10,6 +10,7 @@
 #include "app/option_kinds.hpp"
 #include "io/checkpoint.hpp"
 #include "run/case.hpp"
+#include "run/machine/exec_choice.hpp"
 
 namespace breccia::app {
 namespace {
@@ -27,7 +28,7 @@ struct PrepareCommand {
     writer.text("case.name", read.name);
     writer.text("case.folder", read.folder);
     writer.text("case.text", read.text);
-    const std::string size = save_model_of(read, writer);
+    const std::string size = save_model_of(read, writer, exec_on("cpu", 0, nullptr));
     writer.write(target);
     fmt::print("{}  {}\n", target, size);
   }

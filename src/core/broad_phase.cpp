@@ -349,8 +349,8 @@ BroadPhase::BroadPhase(Space space)
 
 void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids) {
   const Index count = ids.size();
-  by_id_.resize(count);
-  rank_of_.resize(count);
+  by_id_.resize_unfilled(count);
+  rank_of_.resize_unfilled(count);
   for_each(exec, count, NoteId{ids.view(), by_id_.view()});
   const NotAscending not_ascending{by_id_.view()};
   if (fold(exec, count - 1, none, not_ascending, Least{}) != none) {
@@ -382,10 +382,10 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
   rank_elements(exec, ids);
 
   // Elements in the order of their cells.
-  cells_.resize(count);
-  keys_.resize(count);
-  boxes_.resize(count);
-  ranks_.resize(count);
+  cells_.resize_unfilled(count);
+  keys_.resize_unfilled(count);
+  boxes_.resize_unfilled(count);
+  ranks_.resize_unfilled(count);
   for_each(exec, count, NumberCell{grid, boxes.view(), cells_.view()});
   sort_by_key(exec, cells_);
   for_each(exec, count,
@@ -395,14 +395,14 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
   // Count, scan, fill.
   const CellWalk walk{grid, run_length(exec, count), keys_.view(), boxes_.view()};
   const Index runs = (count + walk.run_length - 1) / walk.run_length;
-  tests_.resize(runs);
+  tests_.resize_unfilled(runs);
   starts_.clear();
   starts_.resize(count + 1);
-  slots_.resize(count * slots_each);
+  slots_.resize_unfilled(count * slots_each);
   const LeftOut left_out{known, ranks_.view()};
   for_each(exec, runs, FindPairs{walk, {left_out, starts_.view(), slots_.view()}, tests_.view()});
   const Index found = exclusive_scan(exec, starts_);
-  packed_.resize(found);
+  packed_.resize_unfilled(found);
   const int rank_bits = std::bit_width(static_cast<std::uint32_t>(count));
   const PackPair pack{ranks_.view(), rank_bits};
   for_each(
@@ -412,7 +412,8 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
 
   // By ascending key.
   sort_keys(exec, packed_, scratch_, 2 * rank_bits);
-  resize_fields(pairs, found);
+  pairs.each_field(
+      [found](const char*, const char*, auto& array) { array.resize_unfilled(found); });
   for_each(exec, found,
            UnpackPairs{packed_.view(), by_id_.view(), rank_bits, pairs.key.view(), pairs.a.view(),
                        pairs.b.view()});

@@ -70,11 +70,11 @@ void build_incidence(const Exec& exec, const Buffer<Index>& a, const Buffer<Inde
         "the model needs more than the 1,073,741,823 pairs of elements whose ends fit a 32-bit "
         "index; use fewer elements, or a smaller search.margin or links.range");
   Buffer<Index>& starts = incidence.starts;
-  starts.resize(elements + 1);
+  starts.resize_unfilled(elements + 1);
   clear_bytes(starts.data(), starts.space(),
               static_cast<std::size_t>(starts.size()) * sizeof(Index));
   for_each(exec, pairs, CountEnds{a.view(), b.view(), starts.view()});
-  incidence.entries.resize(exclusive_scan(exec, starts));
+  incidence.entries.resize_unfilled(exclusive_scan(exec, starts));
   Buffer<Index> next(starts);
   for_each(exec, pairs, PlaceEnds{a.view(), b.view(), next.view(), incidence.entries.view()});
   for_each(exec, elements,

@@ -37,7 +37,7 @@ Buffer<Index> missing_from(const Exec& exec, const Buffer<PairKey>& sought,
 
 void match_keys(const Exec& exec, const Buffer<PairKey>& old_keys, const Buffer<PairKey>& new_keys,
                 Buffer<Index>& source) {
-  source.resize(new_keys.size());
+  source.resize_unfilled(new_keys.size());
   for_each(exec, new_keys.size(), FindKey{new_keys.view(), old_keys.view(), source.view()});
 }
 

@@ -26,9 +26,10 @@ struct ListKept {
 /// The items of [0, count) for which keep(i) holds, ascending.
 template <class Keep>
 Buffer<Index> items_where(const Exec& exec, Index count, const Keep& keep) {
-  Buffer<Index> starts(exec.space, count + 1), kept(exec.space);
+  Buffer<Index> starts = unfilled<Index>(exec.space, count + 1), kept(exec.space);
+  clear_bytes(starts.data() + count, exec.space, sizeof(Index));
   for_each(exec, count, MarkKept<Keep>{keep, starts.view()});
-  kept.resize(exclusive_scan(exec, starts));
+  kept.resize_unfilled(exclusive_scan(exec, starts));
   for_each(exec, count, ListKept{std::as_const(starts).view(), kept.view()});
   return kept;
 }

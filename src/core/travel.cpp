@@ -44,7 +44,7 @@ void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& 
                   const Buffer<Vec3>& velocity, Travel& travel) {
   BR_ASSERT(position.size() == velocity.size());
   copy_to(travel.reference, position);
-  travel.margin.resize(position.size());
+  travel.margin.resize_unfilled(position.size());
   for_each(exec, position.size(), ChooseMargin{rule, velocity.view(), travel.margin.view()});
   const Index lost =
       fold(exec, position.size(), all_finite, LostMargin{travel.margin.view()}, Least{});
@@ -56,7 +56,7 @@ void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& 
 void sphere_boxes(const Exec& exec, const Buffer<Vec3>& centre, const Buffer<double>& radius,
                   const Buffer<double>& margin, Buffer<Box>& boxes, double farthest) {
   BR_ASSERT(centre.size() == radius.size() && centre.size() == margin.size());
-  boxes.resize(centre.size());
+  boxes.resize_unfilled(centre.size());
   for_each(exec, centre.size(),
            BoxSphere{centre.view(), radius.view(), margin.view(), boxes.view(), farthest});
 }

@@ -2,8 +2,6 @@
 // stay.
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/rows.hpp"
@@ -14,6 +12,7 @@
 #include "dem/wall_key.hpp"
 #include "domain/drift.hpp"
 #include "domain/owned.hpp"
+#include "exec/filling.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -47,7 +46,7 @@ struct ListHeld {
 
 /// The links that a search leaves out.
 KnownPairs held_pairs(World& w) {
-  w.held_partners.resize(w.linked_partners.size());
+  w.held_partners.resize_unfilled(w.linked_partners.size());
   Index first = 0;
   w.each_set([&](const auto& set) {
     with_number(w.exec.precision, [&](auto number) {
@@ -207,118 +206,6 @@ void divide_by_wall(World& w) {
         std::lower_bound(wall_of.begin(), wall_of.end(), static_cast<Index>(k)) - wall_of.begin());
 }
 
-/// First link of each element among a group's links, which are sorted by a.
-template <class Law>
-void find_starts(const std::vector<Index>& a, Index elements, LinkGroup<Law>& group) {
-  group.starts.assign(static_cast<std::size_t>(elements) + 1, group.end);
-  Index element = 0;
-  for (Index i = group.begin; i < group.end; ++i)
-    for (; element <= a[static_cast<std::size_t>(i)]; ++element)
-      group.starts[static_cast<std::size_t>(element)] = i;
-}
-
-/// Links at one of their ends, by element, each row in the order of `order`.
-LinkRows rows_of(Space space, const std::vector<Index>& end, Index elements,
-                 const std::vector<Index>& order) {
-  std::vector<Index> starts(static_cast<std::size_t>(elements) + 1, 0), links(order.size());
-  for (const Index e : end) ++starts[static_cast<std::size_t>(e) + 1];
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<Index> next = starts;
-  for (const Index link : order) {
-    Index& place = next[static_cast<std::size_t>(end[static_cast<std::size_t>(link)])];
-    links[static_cast<std::size_t>(place++)] = link;
-  }
-  LinkRows rows(space);
-  copy_to(rows.starts, starts);
-  copy_to(rows.links, links);
-  return rows;
-}
-
-/// The order in which the host adds links up, as lists for a device: by tiles of link_plan, which
-/// global ids bound, each group by group.
-void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& b) {
-  const Index count = w.elements.size();
-  const std::vector<Index>& tiles = w.link_plan.tiles;
-  std::vector<Index> order;
-  order.reserve(a.size());
-  for (std::size_t t = 0; t + 1 < tiles.size(); ++t) {
-    const auto begin = static_cast<std::size_t>(tiles[t]);
-    const auto end = static_cast<std::size_t>(tiles[t + 1]);
-    for (const auto& group : w.concrete.groups)
-      for (Index i = group.starts[begin]; i < group.starts[end]; ++i) order.push_back(i);
-  }
-  w.rows_a = rows_of(w.exec.space, a, count, order);
-  w.rows_b = rows_of(w.exec.space, b, count, order);
-  with_number(w.exec.precision, [&](auto number) {
-    w.link_actions.as<decltype(number)>().resize(static_cast<Index>(a.size()));
-  });
-}
-
-/// Whether the host sums facets as they come. Not beside bars: an element's facets and bonds are
-/// added in the order of their partners, one among the other.
-bool facets_are_swept(const World& w) {
-  return w.exec.space == Space::host && w.ldpm.size() > 0 &&
-         w.steel.size() + w.interface.size() + w.parallel.size() == 0;
-}
-
-/// Runs of elements with about as many links each.
-void plan_sweep(World& w) {
-  std::vector<Index> a, b;
-  copy_to(a, w.concrete.a);
-  copy_to(b, w.concrete.b);
-  const Index count = w.elements.size();
-  for (auto& group : w.concrete.groups) find_starts(a, count, group);
-  const bool facets = facets_are_swept(w);
-  if (facets) {
-    std::vector<Index> of_a, of_b;
-    copy_to(of_a, w.ldpm.a);
-    copy_to(of_b, w.ldpm.b);
-    for (auto& group : w.ldpm.groups) find_starts(of_a, count, group);
-    a.insert(a.end(), of_a.begin(), of_a.end());
-    b.insert(b.end(), of_b.begin(), of_b.end());
-  }
-  std::vector<GlobalId> id;
-  copy_to(id, w.elements.id);
-  std::vector<Index> links_before(static_cast<std::size_t>(count) + 1, 0);
-  std::vector<Index> reached(static_cast<std::size_t>(count) + 1,
-                             0);  // by links of elements before
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const auto next = static_cast<std::size_t>(a[i]) + 1;
-    ++links_before[next];
-    reached[next] = std::max(reached[next], b[i] + 1);
-  }
-  for (std::size_t e = 1; e < links_before.size(); ++e) {
-    links_before[e] += links_before[e - 1] + 1;  // an element weighs about as much as a link
-    reached[e] = std::max(reached[e], reached[e - 1]);
-  }
-  const int threads = count < smallest_shared_loop ? 1 : w.exec.threads;
-  w.link_plan = {};
-  w.link_plan.facets = facets;
-  std::vector<Index>& tiles = w.link_plan.tiles;
-  for (Index e = 0; e < count; ++e)
-    if (e == 0 || id[static_cast<std::size_t>(e)] / sweep_tile !=
-                      id[static_cast<std::size_t>(e) - 1] / sweep_tile)
-      tiles.push_back(e);
-  tiles.push_back(count);
-  for (int t = 0; t <= threads; ++t) {
-    const auto share =
-        static_cast<Index>(static_cast<std::int64_t>(links_before.back()) * t / threads);
-    const auto begin = static_cast<Index>(
-        std::lower_bound(links_before.begin(), links_before.end(), share) - links_before.begin());
-    const auto tile = std::upper_bound(tiles.begin(), tiles.end(), std::min(begin, count));
-    w.link_plan.begin.push_back(*(tile - 1));
-  }
-  w.link_plan.begin.back() = count;
-  for (int t = 0; t < threads; ++t) {
-    const Index begin = w.link_plan.begin[static_cast<std::size_t>(t)];
-    w.link_plan.first_private.push_back(std::max(begin, reached[static_cast<std::size_t>(begin)]));
-  }
-  for (std::size_t i = 0; i < a.size(); ++i)
-    w.link_plan.reach = std::max(w.link_plan.reach, b[i] - a[i]);
-  w.link_plan.deferred.resize(static_cast<std::size_t>(threads));
-  if (w.exec.space != Space::host) list_rows(w, a, b);
-}
-
 struct MotionOf {
   View<const ElementState> state;
   BR_HD CommonMotion operator()(Index e) const {
@@ -337,8 +224,9 @@ Drift choose_drift(const World& w) {
 /// The pairs that may touch until the next search.
 void search(World& w) {
   const Index count = w.elements.size();
-  Buffer<Vec3> position(w.exec.space, count), velocity(w.exec.space, count);
-  Buffer<double> radius(w.exec.space, count);
+  Buffer<Vec3> position = unfilled<Vec3>(w.exec.space, count);
+  Buffer<Vec3> velocity = unfilled<Vec3>(w.exec.space, count);
+  Buffer<double> radius = unfilled<double>(w.exec.space, count);
   for_each(w.exec, count,
            UnpackState{w.travel.drift.velocity, std::as_const(w.elements.state).view(),
                        position.view(), velocity.view(), radius.view()});
@@ -396,6 +284,7 @@ void find_contacts(World& w) {
   w.travel.drift = choose_drift(w);
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
+  const FillingThreads filling(w.exec.threads);
   collective_try(w.domain.ranks, [&w] { search(w); });
   select_active_ghosts(w);
 }
@@ -407,90 +296,6 @@ void derive_contacts(World& w) {
   w.contact_actions.resize(w.contacts.size());  // all zero: ContactForces writes what touches
   divide_by_wall(w);
   w.tiles.contacts_known = false;
-}
-
-namespace {
-
-template <class Law>
-void list_laws(LinkSet<Law>& set) {
-  std::vector<Law> laws;
-  std::vector<Index> ends;
-  for (const LinkGroup<Law>& group : set.groups) {
-    laws.push_back(group.law);
-    ends.push_back(group.end);
-  }
-  copy_to(set.on_device.laws, laws);
-  copy_to(set.on_device.ends, ends);
-  if constexpr (LinkSet<Law>::kind == LinkKind::concrete) {
-    std::vector<ConcreteLinkOf<float>> rounded;
-    for (const Law& law : laws) rounded.push_back(law.template as<float>());
-    copy_to(set.on_device.in_single, rounded);
-  }
-}
-
-struct NameActions {
-  static constexpr const char* name = "dem.name_actions";
-  View<const Index> actions;
-  View<Entry> entries;
-
-  BR_HD void operator()(Index k) const {
-    entries[k] = 2 * actions[pair_of(entries[k])] + side_of(entries[k]);
-  }
-};
-
-/// The actions that elements add up from `bar_actions`: of each pair of ends, of facets the first
-/// of each edge. Swept ones are not among them.
-void list_bars(World& w) {
-  std::vector<Index> a, b, actions;
-  Index first = 0;
-  w.each_set([&](const auto& set) {
-    if constexpr (!std::remove_reference_t<decltype(set)>::swept) {
-      constexpr bool facets = std::remove_reference_t<decltype(set)>::kind == LinkKind::ldpm;
-      std::vector<Index> of_a, of_b, leads;
-      copy_to(of_a, set.a);
-      copy_to(of_b, set.b);
-      if constexpr (facets) copy_to(leads, set.edges.leads);
-      const Index count = facets ? static_cast<Index>(leads.size()) - 1 : set.size();
-      for (Index k = 0; k < count && !(facets && facets_are_swept(w)); ++k) {
-        const auto at = static_cast<std::size_t>(facets ? leads[static_cast<std::size_t>(k)] : k);
-        a.push_back(of_a[at]);
-        b.push_back(of_b[at]);
-        actions.push_back(first + static_cast<Index>(at));
-      }
-      first += set.size();
-    }
-  });
-  Buffer<Index> all_a(w.exec.space), all_b(w.exec.space), named(w.exec.space);
-  copy_to(all_a, a);
-  copy_to(all_b, b);
-  copy_to(named, actions);
-  build_incidence(w.exec, all_a, all_b, w.elements.id, w.bar_incidence);
-  if (first > std::numeric_limits<Index>::max() / 2)
-    throw DeviceError(
-        "the model has more than the 1,073,741,823 facets and links of bars whose ends fit a "
-        "32-bit index; use coarser grains");
-  for_each(w.exec, w.bar_incidence.entries.size(),
-           NameActions{std::as_const(named).view(), w.bar_incidence.entries.view()});
-  w.bar_actions.resize(first);
-}
-
-}  // namespace
-
-void list_laws(World& w) {
-  w.each_set([](auto& set) { list_laws(set); });
-}
-
-void derive(World& w) {
-  list_laws(w);
-  find_edges(w.ldpm);
-  if (w.exec.space != Space::host) w.ldpm.edges.shares.resize(w.ldpm.size());
-  list_bars(w);
-  if (w.exec.space == Space::host) w.link_sums.resize(w.elements.size());
-  w.critical.resize(w.elements.size());
-  plan_sweep(w);
-  w.tiles.forget();
-  derive_contacts(w);
-  w.graph.clear();
 }
 
 }  // namespace breccia::dem

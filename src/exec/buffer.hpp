@@ -46,7 +46,8 @@ struct View {
   }
 };
 
-/// A growing array of plain values in one space. New items are zero. Never shrinks its memory.
+/// A growing array of plain values in one space. New items are zero, unless a caller that writes
+/// them all says so. Never shrinks its memory.
 template <class T>
 class Buffer {
   static_assert(std::is_trivially_copyable_v<T>, "arrays cross spaces by copying bytes");
@@ -84,20 +85,18 @@ class Buffer {
 
   /// Keeps the first min(old, new) items; items beyond them are zero.
   void resize(Index size) {
-    reserve(size);
-    if (size > size_)
+    const bool is_zero = grow(size);
+    if (size > size_ && !is_zero)
       clear_bytes(data_ + size_, space_, static_cast<std::size_t>(size - size_) * sizeof(T));
     size_ = size;
   }
-  void reserve(Index capacity) {
-    if (capacity <= capacity_) return;
-    const Index grown = capacity > capacity_ + capacity_ / 2 ? capacity : capacity_ + capacity_ / 2;
-    T* larger = static_cast<T*>(allocate(space_, static_cast<std::size_t>(grown) * sizeof(T)));
-    copy_bytes(larger, space_, data_, space_, static_cast<std::size_t>(size_) * sizeof(T));
-    release(space_, data_);
-    data_ = larger;
-    capacity_ = grown;
+  /// Likewise, but items beyond the old ones are for the caller to write: no page of their memory
+  /// is taken here.
+  void resize_unfilled(Index size) {
+    reserve(size);
+    size_ = size;
   }
+  void reserve(Index capacity) { grow(capacity); }
   void clear() { size_ = 0; }
 
   View<T> view() { return make<T>(data_); }
@@ -117,6 +116,18 @@ class Buffer {
   const T* data() const { return data_; }
 
  private:
+  /// Makes room. Returns whether all of it beyond the items is known to be zero.
+  bool grow(Index capacity) {
+    if (capacity <= capacity_) return false;
+    const Index grown = capacity > capacity_ + capacity_ / 2 ? capacity : capacity_ + capacity_ / 2;
+    const std::size_t bytes = static_cast<std::size_t>(grown) * sizeof(T);
+    T* larger = static_cast<T*>(allocate(space_, bytes));
+    copy_bytes(larger, space_, data_, space_, static_cast<std::size_t>(size_) * sizeof(T));
+    release(space_, data_);
+    data_ = larger;
+    capacity_ = grown;
+    return comes_zeroed(space_, bytes);
+  }
   void assign(const Buffer& other) {
     reserve(other.size_);
     size_ = other.size_;
@@ -138,20 +149,28 @@ class Buffer {
   Index capacity_ = 0;
 };
 
+/// So many items, which the caller writes.
+template <class T>
+Buffer<T> unfilled(Space space, Index size) {
+  Buffer<T> items(space);
+  items.resize_unfilled(size);
+  return items;
+}
+
 /// The visible crossing between spaces: `to` gets the size and items of `from`, in its own space.
 template <class T>
 void copy_to(Buffer<T>& to, const Buffer<T>& from) {
-  to.resize(from.size());
+  to.resize_unfilled(from.size());
   copy_bytes(to.data(), to.space(), from.data(), from.space(),
              static_cast<std::size_t>(from.size()) * sizeof(T));
 }
-template <class T>
-void copy_to(Buffer<T>& to, const std::vector<T>& from) {
-  to.resize(static_cast<Index>(from.size()));
+template <class T, class Memory>
+void copy_to(Buffer<T>& to, const std::vector<T, Memory>& from) {
+  to.resize_unfilled(static_cast<Index>(from.size()));
   copy_bytes(to.data(), to.space(), from.data(), Space::host, from.size() * sizeof(T));
 }
-template <class T>
-void copy_to(std::vector<T>& to, const Buffer<T>& from) {
+template <class T, class Memory>
+void copy_to(std::vector<T, Memory>& to, const Buffer<T>& from) {
   to.resize(static_cast<std::size_t>(from.size()));
   copy_bytes(to.data(), Space::host, from.data(), from.space(), to.size() * sizeof(T));
 }

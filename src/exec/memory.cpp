@@ -19,8 +19,9 @@
 namespace breccia {
 namespace {
 
-constexpr std::size_t alignment =
-    64;  // one cache line; the size is kept in the line before the array
+constexpr std::size_t alignment = 64;  // one cache line; the line before the array says how large
+/// Arrays of so many bytes are mapped: as long as glibc's allocator would map them, too.
+constexpr std::size_t mapped_from = std::size_t{1} << 25;
 /// Arrays of a space that are alive, and the most that were.
 struct Booked {
   std::atomic<std::size_t> alive{0}, peak{0};
@@ -37,7 +38,29 @@ Booked& booked(Space space) {
   static Booked of_host, of_shadow;
   return space == Space::shadow ? of_shadow : of_host;
 }
-thread_local int clearing_threads = 1;
+thread_local int filling_threads = 1;
+
+/// Memory that takes its pages, large ones where the system has them, as it is first written to;
+/// null: there is none.
+void* mapped_block(std::size_t bytes) {
+  void* const block =
+      ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (block == MAP_FAILED) return nullptr;
+  ::madvise(block, bytes, MADV_HUGEPAGE);  // advice alone
+  return block;
+}
+
+/// fill(first, bytes) for portions that make up `bytes`, on the threads that fill arrays.
+template <class Fill>
+void by_portions(std::size_t bytes, const Fill& fill) {
+  constexpr std::size_t portion = std::size_t{1} << 22;
+  if (filling_threads == 1 || bytes < 2 * portion) return fill(std::size_t{0}, bytes);
+  const auto parts = static_cast<int>((bytes + portion - 1) / portion);
+  for_each_task(filling_threads, parts, [&](int part) {
+    const std::size_t first = static_cast<std::size_t>(part) * portion;
+    fill(first, std::min(portion, bytes - first));
+  });
+}
 
 }  // namespace
 
@@ -57,7 +80,8 @@ void* allocate(Space space, std::size_t bytes) {
 #endif
   }
   const std::size_t padded = (bytes + 2 * alignment - 1) / alignment * alignment + alignment;
-  auto* block = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
+  auto* block = static_cast<std::byte*>(padded < mapped_from ? std::aligned_alloc(alignment, padded)
+                                                             : mapped_block(padded));
   if (block == nullptr) throw std::bad_alloc();
   std::memcpy(block, &padded, sizeof padded);
   booked(space).add(padded);
@@ -76,7 +100,14 @@ void release(Space space, void* memory) noexcept {
   std::size_t padded = 0;
   std::memcpy(&padded, block, sizeof padded);
   booked(space).alive -= padded;
-  std::free(block);
+  if (padded < mapped_from)
+    std::free(block);
+  else
+    ::munmap(block, padded);
+}
+
+bool comes_zeroed(Space space, std::size_t bytes) {
+  return space != Space::cuda && bytes >= mapped_from;
 }
 
 void* reserve_memory(std::size_t bytes) {
@@ -100,7 +131,10 @@ void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,
     return;
   }
 #endif
-  std::memcpy(to, from, bytes);
+  by_portions(bytes, [&](std::size_t first, std::size_t size) {
+    std::memcpy(static_cast<std::byte*>(to) + first, static_cast<const std::byte*>(from) + first,
+                size);
+  });
 }
 
 #if defined(BR_CUDA)
@@ -161,22 +195,15 @@ void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) 
     return;
   }
 #endif
-  constexpr std::size_t portion = std::size_t{1} << 22;
-  if (clearing_threads == 1 || bytes < 2 * portion) {
-    std::memset(memory, 0, bytes);
-    return;
-  }
-  const auto parts = static_cast<int>((bytes + portion - 1) / portion);
-  for_each_task(clearing_threads, parts, [=](int part) {
-    const std::size_t first = static_cast<std::size_t>(part) * portion;
-    std::memset(static_cast<std::byte*>(memory) + first, 0, std::min(portion, bytes - first));
+  by_portions(bytes, [=](std::size_t first, std::size_t size) {
+    std::memset(static_cast<std::byte*>(memory) + first, 0, size);
   });
 }
 
-ClearingThreads::ClearingThreads(int threads)
-    : before_(std::exchange(clearing_threads, std::max(threads, 1))) {}
-ClearingThreads::~ClearingThreads() {
-  clearing_threads = before_;
+FillingThreads::FillingThreads(int threads)
+    : before_(std::exchange(filling_threads, std::max(threads, 1))) {}
+FillingThreads::~FillingThreads() {
+  filling_threads = before_;
 }
 
 #if defined(BR_CUDA)

@@ -9,6 +9,9 @@ namespace breccia {
 
 /// `bytes` of memory in `space`, aligned to 64 bytes. @throws std::bad_alloc
 void* allocate(Space space, std::size_t bytes);
+/// Whether so much memory of a space is zero as allocate() gives it: large arrays of the host take
+/// their pages from the system as threads first write to them.
+bool comes_zeroed(Space space, std::size_t bytes);
 void release(Space space, void* memory) noexcept;
 /// Address space for `bytes` of the host, aligned to pages: memory is taken page by page, as each
 /// is first written to; peak_array_bytes() does not count it. Zero at first. @throws std::bad_alloc

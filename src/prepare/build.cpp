@@ -4,6 +4,9 @@
 #include <filesystem>
 
 #include "dem/setup/materials.hpp"
+#include "dem/setup/model_arrays.hpp"
+#include "exec/filling.hpp"
+#include "exec/timers.hpp"
 #include "math/constants.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
@@ -49,8 +52,8 @@ bool is_packed(const BodyConfig& body) {
 /// Collects the elements of all bodies.
 class Assembly {
  public:
-  Assembly(const Config& config, const std::string& case_folder)
-      : config_(config), case_folder_(case_folder) {
+  Assembly(const Config& config, const std::string& case_folder, const Exec& how)
+      : config_(config), case_folder_(case_folder), how_(how) {
     for (std::size_t i = 0; i < config.bodies.size(); ++i) {
       const BodyConfig& body = config.bodies[i];
       model_.groups.push_back(body.name);
@@ -103,6 +106,28 @@ class Assembly {
     model_.bar_next.push_back(-1);
   }
 
+  /// Spheres of one density.
+  void add_all(const PlainVector<Vec3>& offset, const PlainVector<double>& radius, double density) {
+    const std::size_t first = model_.position.size();
+    dem::each_element_array(model_,
+                            [&](const char*, auto& items) { items.resize(first + radius.size()); });
+    each_portion(how_.threads, static_cast<Index>(radius.size()), [&](Index begin, Index end) {
+      for (std::size_t k = at(begin); k < at(end); ++k) {
+        const std::size_t e = first + k;
+        const double mass = density * ball(radius[k]);
+        model_.group[e] = group_;
+        model_.material[e] = material_;
+        model_.radius[e] = radius[k];
+        model_.mass[e] = mass;
+        model_.inertia[e] = 0.4 * mass * radius[k] * radius[k];
+        model_.position[e] = body_->center + offset[k];
+        model_.velocity[e] = body_->velocity + cross(body_->spin, offset[k]);
+        model_.spin[e] = body_->spin;
+        model_.bar_previous[e] = model_.bar_next[e] = -1;
+      }
+    });
+  }
+
   /// Bars in the body, and the volume of their steel.
   struct Bars {
     std::vector<Bar> axes;
@@ -120,13 +145,13 @@ class Assembly {
     return bars;
   }
   void add_packing() {
+    const StageTime timed(how_, "packing");
     const Bars bars = bars_within();
     const prepare::BodyPacking packing = prepare::pack_body(
         *body_, bars.axes, bars.volume,
-        {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)});
-    const double density = material().density / packing.compactness;
-    for (std::size_t i = 0; i < packing.radius.size(); ++i)
-      add(packing.position[i], packing.radius[i], density * ball(packing.radius[i]));
+        {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)},
+        how_.threads);
+    add_all(packing.position, packing.radius, material().density / packing.compactness);
   }
 
   void add_particles() {
@@ -155,8 +180,8 @@ class Assembly {
     for (const double r : spheres.radius) solid += ball(r);
     const double volume = body_->bulk_volume();
     const double density = material().density * (volume > 0.0 ? volume / solid : 1.0);
-    for (std::size_t i = 0; i < spheres.radius.size(); ++i)
-      add(spheres.position[i], spheres.radius[i], density * ball(spheres.radius[i]));
+    add_all({spheres.position.begin(), spheres.position.end()},
+            {spheres.radius.begin(), spheres.radius.end()}, density);
   }
 
   void join(Index before, Index after) {
@@ -186,6 +211,7 @@ class Assembly {
 
   const Config& config_;
   const std::string& case_folder_;
+  const Exec& how_;
   const BodyConfig* body_ = nullptr;
   std::int16_t group_ = 0, material_ = 0;
   Model model_;
@@ -206,7 +232,7 @@ void give_boundaries(Model& model, const Config& config) {
     const dem::GrainsConfig& grains = config.bodies[b].grains;
     if (grains.boundary.empty()) continue;
     const std::vector<std::uint64_t> grain = prepare::voronoi_grains(
-        model.position, grains.size,
+        std::vector<Vec3>(model.position.begin(), model.position.end()), grains.size,
         {static_cast<std::uint64_t>(config.seed), grain_stream + static_cast<std::uint32_t>(b)});
     const auto of_body = [&](Index e) {
       return static_cast<std::size_t>(model.group[static_cast<std::size_t>(e)]) == b;
@@ -233,12 +259,13 @@ void refuse_bars_outside(const Config& config, const std::string& case_folder) {
 
 }  // namespace
 
-dem::Model build_model(const dem::Config& config, const std::string& case_folder) {
+dem::Model build_model(const dem::Config& config, const std::string& case_folder, const Exec& how) {
+  const FillingThreads filling(how.threads);
   prepare::refuse(prepare::body_problems(config), "with the model");
 
   refuse_bars_outside(config, case_folder);
   Config whole = prepare::with_whole_bodies(config, case_folder);
-  Assembly assembly(whole, case_folder);
+  Assembly assembly(whole, case_folder, how);
   Model& model = assembly.model();
   for (BodyLinks& links : assembly.links())
     if (links.kind == BodyLinks::Kind::bars) {
@@ -246,16 +273,30 @@ dem::Model build_model(const dem::Config& config, const std::string& case_folder
       links.within = prepare::shape_within(
           host, *prepare::item_named(config.materials, host.material), case_folder);
     }
-  prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
-  prepare::link_elements(model, assembly.links(), config.links);
-  prepare::link_facets(model);
-  for (MaterialConfig& material : whole.materials) material.bedding = {};  // E is that without
-  prepare::set_stiffness(model, whole);
-  give_boundaries(model, config);
-  prepare::carve(model, config, case_folder);
-  prepare::add_wall_meshes(model, config, case_folder);
-
-  prepare::refuse(prepare::free_overlaps(model, assembly.links()), "with the model");
+  const auto part = [&how](const char* name, const auto& work) {
+    const StageTime timed(how, name);
+    work();
+  };
+  part("order", [&] {
+    const double edge = 2.0 * mean_radius(model);
+    prepare::reorder(model, prepare::spatial_order(model.position, edge, how.threads), how.threads);
+  });
+  part("links", [&] {
+    prepare::link_elements(model, assembly.links(), config.links, how.threads);
+    prepare::link_facets(model);
+  });
+  part("stiffness", [&] {
+    for (MaterialConfig& material : whole.materials) material.bedding = {};  // E is that without
+    prepare::set_stiffness(model, whole, how.threads);
+  });
+  part("carving", [&] {
+    give_boundaries(model, config);
+    prepare::carve(model, config, case_folder);
+    prepare::add_wall_meshes(model, config, case_folder);
+  });
+  part("overlaps", [&] {
+    prepare::refuse(prepare::free_overlaps(model, assembly.links(), how.threads), "with the model");
+  });
   return std::move(model);
 }
 

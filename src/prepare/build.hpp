@@ -5,6 +5,7 @@
 
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
+#include "exec/space.hpp"
 
 namespace breccia {
 
@@ -25,8 +26,10 @@ namespace breccia {
 ///              links at the start).
 ///
 /// @param case_folder  where the files named by the case are
+/// @param how          its threads share the work: any number gives the same bits
 /// @throws InputError  names every body that cannot be built, or that overlaps another one
 /// @throws IoError     if a file cannot be read
-dem::Model build_model(const dem::Config& config, const std::string& case_folder);
+dem::Model build_model(const dem::Config& config, const std::string& case_folder,
+                       const Exec& how = {});
 
 }  // namespace breccia

@@ -52,10 +52,11 @@ void of_both(const coupled::Config& config, const Check& check) {
 
 }  // namespace
 
-coupled::Model build_model(const coupled::Config& config, const std::string& case_folder) {
+coupled::Model build_model(const coupled::Config& config, const std::string& case_folder,
+                           const Exec& how) {
   const coupled::Parts parts = coupled::parts_of(config);
   coupled::Model model;
-  of_part(config, "spheres", [&] { model.spheres = build_model(parts.spheres, case_folder); });
+  of_part(config, "spheres", [&] { model.spheres = build_model(parts.spheres, case_folder, how); });
   of_part(config, "tetrahedra",
           [&] { model.tetrahedra = build_model(parts.tetrahedra, case_folder); });
   return model;

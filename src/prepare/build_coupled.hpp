@@ -12,7 +12,8 @@ namespace breccia {
 
 /// The models of both methods. @throws InputError, IoError as theirs, keys with the part before
 /// them
-coupled::Model build_model(const coupled::Config& config, const std::string& case_folder);
+coupled::Model build_model(const coupled::Config& config, const std::string& case_folder,
+                           const Exec& how = {});
 
 /// Adds both models, as sections "spheres.model.*" and "tetrahedra.model.*".
 void save_model(CheckpointWriter& writer, const coupled::Model& model);

@@ -7,6 +7,7 @@
 
 #include "dem/setup/model_arrays.hpp"
 #include "exec/error.hpp"
+#include "exec/plain_vector.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/model_sections.hpp"
 
@@ -17,12 +18,19 @@ using namespace model_sections;
 
 /// Links by member, so that no padding reaches the file.
 struct LinkArrays {
-  std::vector<Index> a, b;
-  std::vector<std::uint8_t> kind;
-  std::vector<std::int16_t> material;
-  std::vector<double> share;
-  std::vector<std::uint8_t> parted;
-  std::vector<double> strength;  ///< empty: 1
+  PlainVector<Index> a, b;
+  PlainVector<std::uint8_t> kind;
+  PlainVector<std::int16_t> material;
+  PlainVector<double> share;
+  PlainVector<std::uint8_t> parted;
+  PlainVector<double> strength;  ///< empty: 1
+
+  void resize(std::size_t count) {
+    for (PlainVector<Index>* end : {&a, &b}) end->resize(count);
+    for (PlainVector<std::uint8_t>* byte : {&kind, &parted}) byte->resize(count);
+    for (PlainVector<double>* number : {&share, &strength}) number->resize(count);
+    material.resize(count);
+  }
 };
 
 template <class Arrays, class Visit>
@@ -41,6 +49,12 @@ struct FacetArrays {
   std::vector<Vec3> center;
   std::vector<double> area;
 };
+
+template <class T, class Memory>
+void load_into(std::vector<T, Memory>& items, const CheckpointReader& reader,
+               const std::string& name) {
+  items = load_array<T, Memory>(reader, name);
+}
 
 std::string wall_mesh_name(std::size_t k) {
   return "wall_mesh." + std::to_string(k);
@@ -165,14 +179,16 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
   each_element_array(model,
                      [&](const char* name, const auto& items) { save_array(writer, name, items); });
   LinkArrays links;
-  for (const dem::Model::Link& link : model.links) {
-    links.a.push_back(link.a);
-    links.b.push_back(link.b);
-    links.kind.push_back(static_cast<std::uint8_t>(link.kind));
-    links.material.push_back(link.material);
-    links.share.push_back(link.share);
-    links.parted.push_back(link.parted ? 1 : 0);
-    links.strength.push_back(link.strength);
+  links.resize(model.links.size());
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const dem::Model::Link& link = model.links[i];
+    links.a[i] = link.a;
+    links.b[i] = link.b;
+    links.kind[i] = static_cast<std::uint8_t>(link.kind);
+    links.material[i] = link.material;
+    links.share[i] = link.share;
+    links.parted[i] = link.parted ? 1 : 0;
+    links.strength[i] = link.strength;
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
@@ -221,29 +237,28 @@ dem::Model load_model(const CheckpointReader& reader) {
   model.groups = lines_in(reader.text("model.groups"));
   model.interaction_range = reader.value<double>("model.interaction_range");
   model.bulk = load_array<dem::Model::Bulk>(reader, "bulk");
-  each_element_array(model, [&](const char* array, auto& items) {
-    items =
-        load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
-  });
+  each_element_array(model,
+                     [&](const char* array, auto& items) { load_into(items, reader, array); });
   LinkArrays links;
-  each_link_array(links, [&](const char* array, auto& items) {
-    items =
-        load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
-  });
-  if (reader.has("model.link_strength"))
-    links.strength = load_array<double>(reader, "link_strength");
-  else
-    links.strength.assign(links.a.size(), 1.0);
+  each_link_array(links, [&](const char* array, auto& items) { load_into(items, reader, array); });
+  if (reader.has("model.link_strength")) load_into(links.strength, reader, "link_strength");
   if (links.b.size() != links.a.size() || links.kind.size() != links.a.size() ||
       links.material.size() != links.a.size() || links.share.size() != links.a.size() ||
-      links.parted.size() != links.a.size() || links.strength.size() != links.a.size())
+      links.parted.size() != links.a.size() ||
+      (!links.strength.empty() && links.strength.size() != links.a.size()))
     throw CheckpointError("the model's links are not whole");
   Index facet = 0;
+  model.links.resize(links.a.size());
   for (std::size_t i = 0; i < links.a.size(); ++i) {
     const auto kind = static_cast<dem::LinkKind>(links.kind[i]);
-    model.links.push_back({links.a[i], links.b[i], kind, links.material[i], links.share[i],
-                           kind == dem::LinkKind::ldpm ? facet++ : -1, links.parted[i] != 0,
-                           links.strength[i]});
+    model.links[i] = {links.a[i],
+                      links.b[i],
+                      kind,
+                      links.material[i],
+                      links.share[i],
+                      kind == dem::LinkKind::ldpm ? facet++ : -1,
+                      links.parted[i] != 0,
+                      links.strength.empty() ? 1.0 : links.strength[i]};
   }
   while (reader.has("model." + wall_mesh_name(model.wall_meshes.size())))
     model.wall_meshes.push_back(load_array<Vec3>(reader, wall_mesh_name(model.wall_meshes.size())));

@@ -3,30 +3,33 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "exec/error.hpp"
+#include "exec/memory.hpp"
 #include "io/checkpoint.hpp"
 
 namespace breccia::model_sections {
 
-template <class T>
-void save_array(CheckpointWriter& writer, const std::string& name, const std::vector<T>& items) {
+template <class T, class Memory>
+void save_array(CheckpointWriter& writer, const std::string& name,
+                const std::vector<T, Memory>& items) {
   writer.section("model." + name, items.data(), items.size(), sizeof(T));
 }
 
-template <class T>
-std::vector<T> load_array(const CheckpointReader& reader, const std::string& name) {
+template <class T, class Memory = std::allocator<T>>
+std::vector<T, Memory> load_array(const CheckpointReader& reader, const std::string& name) {
   const CheckpointReader::Section& section = reader.section("model." + name, sizeof(T));
-  std::vector<T> items(section.count);
-  if (!items.empty()) std::memcpy(items.data(), section.bytes.data(), section.bytes.size());
+  std::vector<T, Memory> items(section.count);
+  copy_bytes(items.data(), Space::host, section.bytes.data(), Space::host, section.bytes.size());
   return items;
 }
 
 /// A number of a model that the case must know.
-inline void refuse_unknown(const char* array, const std::vector<std::int16_t>& numbers,
+inline void refuse_unknown(const char* array, std::span<const std::int16_t> numbers,
                            std::int16_t least, std::size_t known) {
   for (const std::int16_t n : numbers)
     if (n < least || n >= static_cast<std::int64_t>(known))

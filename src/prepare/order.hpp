@@ -4,7 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "exec/types.hpp"
+#include "exec/filling.hpp"
+#include "exec/plain_vector.hpp"
 
 namespace breccia::prepare {
 
@@ -14,6 +15,17 @@ void permute(std::vector<T>& items, const std::vector<Index>& order) {
   std::vector<T> permuted;
   permuted.reserve(items.size());
   for (const Index i : order) permuted.push_back(items[static_cast<std::size_t>(i)]);
+  items.swap(permuted);
+}
+
+template <class T>
+void permute(PlainVector<T>& items, const PlainVector<Index>& order, int threads) {
+  PlainVector<T> permuted;
+  permuted.resize(order.size());
+  each_portion(threads, static_cast<Index>(order.size()), [&](Index begin, Index end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+      permuted[i] = items[static_cast<std::size_t>(order[i])];
+  });
   items.swap(permuted);
 }
 

@@ -211,13 +211,20 @@ AnyConfig read_config(const Source& source, const std::vector<std::string>& over
   return read_all<dem::Config>(source, overrides);
 }
 
-/// The model of a case: the prepared one, or built now.
 template <class Config>
-auto model_of(const Case& read, const Config& config) {
-  using Model = decltype(build_model(config, read.folder));
-  if (read.model) return std::get<Model>(*read.model);
+using ModelOf = decltype(build_model(std::declval<const Config&>(), std::string()));
+
+/// The model of a case: the prepared one, or built now and put into `built`.
+template <class Config>
+const ModelOf<Config>& model_of(const Case& read, const Config& config, const Exec& how,
+                                ModelOf<Config>& built) {
+  if (read.model) return std::get<ModelOf<Config>>(*read.model);
   try {
-    return build_model(config, read.folder);
+    if constexpr (requires { build_model(config, read.folder, how); })
+      built = build_model(config, read.folder, how);
+    else
+      built = build_model(config, read.folder);
+    return built;
   } catch (const IoError&) {
     prepare::check_files(config, read.folder);  // names the keys of all that cannot be read
     throw;
@@ -365,20 +372,22 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
                                     bool quiet) {
   return std::visit(
       [&](const auto& config) {
-        decltype(model_of(read, config)) model;
+        using Model = ModelOf<std::remove_cvref_t<decltype(config)>>;
+        Model built;
+        const Model* model = nullptr;
         collective_try(ranks, [&] {  // before any of them takes some
           const MemoryPlan plan = memory_plan(config);
           refuse_without_memory(plan, exec.space == Space::cuda ? plan.host_bytes : plan.run_bytes,
                                 ranks_on_this_machine(ranks));
         });
         collective_try(ranks, [&] {
-          model = located(read, [&] { return model_of(read, config); });
+          model = located(read, [&] { return &model_of(read, config, exec, built); });
           if (exec.space == Space::cuda)
-            plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),
+            plan_device(device_bytes(*model) / (ranks == nullptr ? 1 : ranks->size()),
                         quiet || (ranks != nullptr && ranks->rank() > 0));
         });
         try {
-          return audited(located(read, [&] { return make_method(config, model, exec, ranks); }),
+          return audited(located(read, [&] { return make_method(config, *model, exec, ranks); }),
                          config.audit, config.seed, ranks);
         } catch (const NumericsError& error) {
           throw NumericsError(fmt::format("step 0, t = 0 s: {}", error.what()));
@@ -417,14 +426,16 @@ RunPlan plan_of(const Case& read) {
   return plan;
 }
 
-std::string save_model_of(const Case& read, CheckpointWriter& writer) {
+std::string save_model_of(const Case& read, CheckpointWriter& writer, const Exec& how) {
   return std::visit(
       [&](const auto& config) {
         const MemoryPlan plan = memory_plan(config);
         refuse_without_memory(plan, plan.build_bytes, 1);
-        const auto model = located(read, [&] { return model_of(read, config); });
-        save_model(writer, model);
-        return size_text(model);
+        ModelOf<std::remove_cvref_t<decltype(config)>> built;
+        const auto* const model =
+            located(read, [&] { return &model_of(read, config, how, built); });
+        save_model(writer, *model);
+        return size_text(*model);
       },
       read.config);
 }

@@ -116,6 +116,6 @@ std::unique_ptr<Method> method_to_look_at(const Case& read);
 RunPlan plan_of(const Case& read);
 
 /// Builds the model and adds it to a file. Returns a few words about its size.
-std::string save_model_of(const Case& read, CheckpointWriter& writer);
+std::string save_model_of(const Case& read, CheckpointWriter& writer, const Exec& how = {});
 
 }  // namespace breccia

@@ -62,7 +62,8 @@ struct LinkGroup {
   Law law;                    ///< (constant)
   Index begin = 0, end = 0;   ///< of its links here (set-up, ranks)
   std::int16_t material = 0;  ///< (constant)
-  std::vector<Index> starts;  ///< first link of each element a, and the end; swept on the host only
+  Buffer<Index> starts =
+      Buffer<Index>();  ///< first link of each element a, and the end; swept on the host only
   Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
   double bulk = 1.0;                       ///< Model::Bulk::factor of its bodies  [-]  (constant)
   double strength = 1.0;                   ///< Model::Link::strength of its links  [-]  (constant)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "exec/plain_vector.hpp"
 #include "exec/types.hpp"
 #include "math/vec.hpp"
 
@@ -16,14 +17,14 @@ inline constexpr std::size_t link_kinds = 5;
 /// A case's model, made by prepare and made a world by dem/setup. Element i has global id i.
 struct Model {
   std::vector<std::string> groups;     ///< names of the bodies
-  std::vector<std::int16_t> group;     ///< of each element, index into groups
-  std::vector<std::int16_t> material;  ///< of each element, index into Config::materials
-  std::vector<double> radius;          ///<  [m]
-  std::vector<double> mass;            ///<  [kg]
-  std::vector<double> inertia;         ///<  [kg m2]
-  std::vector<Vec3> position;          ///<  [m]
-  std::vector<Vec3> velocity;          ///<  [m/s]
-  std::vector<Vec3> spin;              ///<  [rad/s]
+  PlainVector<std::int16_t> group;     ///< of each element, index into groups
+  PlainVector<std::int16_t> material;  ///< of each element, index into Config::materials
+  PlainVector<double> radius;          ///<  [m]
+  PlainVector<double> mass;            ///<  [kg]
+  PlainVector<double> inertia;         ///<  [kg m2]
+  PlainVector<Vec3> position;          ///<  [m]
+  PlainVector<Vec3> velocity;          ///<  [m/s]
+  PlainVector<Vec3> spin;              ///<  [rad/s]
 
   /// Elements a < b, stress-free at their distance in `position`.
   struct Link {
@@ -35,7 +36,7 @@ struct Model {
     bool parted = false;    ///< of concrete and parallel bonds: broken from the start, by a cut
     double strength = 1.0;  ///< of a concrete link: factor on its strengths (fabric "faces")  [-]
   };
-  std::vector<Link> links;  ///< sorted by a, then b
+  PlainVector<Link> links;  ///< sorted by a, then b
 
   /// Of LDPM, between elements a < b, in a tetrahedron with c and d (docs/theory-ldpm.md).
   struct Facet {
@@ -43,10 +44,10 @@ struct Model {
     Vec3 center;  ///<  [m]
     double area;  ///< projected across the edge  [m2]
   };
-  std::vector<Facet> facets;  ///< in the order of their links, one each
+  PlainVector<Facet> facets;  ///< in the order of their links, one each
 
-  std::vector<Index> bar_previous;  ///< neighbour of a bar's element along its bar, -1 elsewhere
-  std::vector<Index> bar_next;      ///< likewise, towards the other end
+  PlainVector<Index> bar_previous;  ///< neighbour of a bar's element along its bar, -1 elsewhere
+  PlainVector<Index> bar_next;      ///< likewise, towards the other end
 
   std::vector<std::vector<Vec3>> wall_meshes;  ///< of each wall from an STL file: corners of its
                                                ///< triangles, three each, as in the file  [m]

@@ -20,7 +20,7 @@
 #include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
-#include "exec/sort_scan.hpp"
+#include "exec/filling.hpp"
 #include "math/constants.hpp"
 
 namespace breccia::dem {
@@ -30,32 +30,30 @@ Case& set_up(World& w) {
   return w.given.change(SetUp{});
 }
 
-template <class T>
-Buffer<T> filled(const World& w, const std::vector<T>& items) {
-  Buffer<T> buffer(w.exec.space);
+template <class Items>
+auto filled(const World& w, const Items& items) {
+  Buffer<typename Items::value_type> buffer(w.exec.space);
   copy_to(buffer, items);
   return buffer;
 }
 
 void set_elements(World& w, const Model& m, const Prescribed& held) {
   Elements& e = w.elements;
-  resize_fields(e, m.size());
-  std::vector<GlobalId> ids(static_cast<std::size_t>(m.size()));
-  std::iota(ids.begin(), ids.end(), 0);
-  copy_to(e.id, ids);
+  const int threads = w.exec.threads;
+  fill_items(e.id, m.size(), threads, [](Index i) { return i; });
   copy_to(e.group, m.group);
   copy_to(e.material, m.material);
   copy_to(e.mass, m.mass);
   copy_to(e.inertia, m.inertia);
-  std::vector<ElementState> states;
-  states.reserve(m.radius.size());
-  for (std::size_t i = 0; i < m.radius.size(); ++i)
-    states.push_back({m.position[i], held.velocity_at_start(i, m.velocity[i]),
-                      held.spin_at_start(i, m.spin[i]), m.radius[i]});
-  copy_to(e.state, states);
-  copy_to(e.orientation, std::vector<Quaternion>(ids.size()));
+  fill_items(e.state, m.size(), threads, [&](Index element) {
+    const std::size_t i = at(element);
+    return ElementState{m.position[i], held.velocity_at_start(i, m.velocity[i]),
+                        held.spin_at_start(i, m.spin[i]), m.radius[i]};
+  });
+  fill_items(e.orientation, m.size(), threads, [](Index) { return Quaternion{}; });
   copy_to(e.fixed, held.fixed);
   copy_to(e.motion, held.motion);
+  resize_fields(e, m.size());  // the others are zero
   w.prescribed = held.motions;
   double sum = 0.0;
   for (const double r : m.radius) sum += r;
@@ -65,10 +63,14 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
 /// A released pair is D > 1.5 (R_a + R_b) apart. If margins of two elements never exceed half of
 /// R_a + R_b, a new search comes before such a pair can meet again, whenever it was released.
 void limit_margins(World& w, const Model& m) {
-  double least = no_limit;
-  for (const Model::Link& link : m.links)
-    if (link.kind != LinkKind::steel && link.kind != LinkKind::interface)
-      least = std::min({least, m.radius[at(link.a)], m.radius[at(link.b)]});
+  const auto less = [](double p, double q) { return std::min(p, q); };
+  const auto of_link = [&m](Index i) {
+    const Model::Link& link = m.links[at(i)];
+    if (link.kind == LinkKind::steel || link.kind == LinkKind::interface) return no_limit;
+    return std::min(m.radius[at(link.a)], m.radius[at(link.b)]);
+  };
+  const auto links = static_cast<Index>(m.links.size());
+  double least = best_of(w.exec.threads, links, double{no_limit}, of_link, less);
   if (least == no_limit) least = *std::max_element(m.radius.begin(), m.radius.end());
   set_up(w).largest_margin = 0.5 * least;
 }
@@ -86,10 +88,8 @@ bool moved_by_servo(const Config& config, const SupportConfig& support) {
 void set_sets(World& w, const Config& config, const Model& m, const Prescribed& held) {
   std::vector<ElementSet>& sets = set_up(w).sets;
   for (std::size_t g = 0; g < m.groups.size(); ++g) {
-    std::vector<Index> members;
-    for (std::size_t e = 0; e < m.group.size(); ++e)
-      if (m.group[e] == static_cast<std::int16_t>(g)) members.push_back(static_cast<Index>(e));
-    sets.push_back({m.groups[g], filled(w, members)});
+    const auto is_of = [&](Index e) { return m.group[at(e)] == static_cast<std::int16_t>(g); };
+    sets.push_back({m.groups[g], filled(w, numbers_where(w.exec.threads, m.size(), is_of))});
   }
   for (std::size_t s = 0; s < config.supports.size(); ++s) {
     sets.push_back({config.supports[s].name, filled(w, held.members[s])});
@@ -183,22 +183,27 @@ void set_contacts(World& w, const Config& config, const Model& m) {
   set_free_walls(w, config, m);
   place_motions(w);
   // A step that resolves the contact of two like elements, for those that nothing else slows down.
-  for (std::size_t e = 0; e < m.radius.size(); ++e) {
+  std::vector<ContactPair> pairs;
+  for (const MaterialConfig& c : config.materials)
+    pairs.push_back(contact_pair(config.contact, c, c));
+  const auto step_of = [&](Index element) {
+    const std::size_t e = at(element);
     const auto material = static_cast<std::size_t>(m.material[e]);
-    const MaterialConfig& c = config.materials[material];
     const double r = m.radius[e];
     double step = 0.0;
     if (config.contact.law == "hertz") {  // a fifth of the Rayleigh time
+      const MaterialConfig& c = config.materials[material];
       const double density = m.mass[e] / (4.0 / 3.0 * pi * r * r * r);
       step = 0.2 * pi * r * std::sqrt(density * 2.0 * (1.0 + c.poisson) / c.young) /
              (0.1631 * c.poisson + 0.8766);
     } else {
-      const ContactPair pair = contact_pair(config.contact, c, c);
-      step = std::sqrt(2.0 * m.mass[e] / (pair.normal * 0.5 * r));
+      step = std::sqrt(2.0 * m.mass[e] / (pairs[material].normal * 0.5 * r));
       if (given.contact.damping > 0.0) step *= 0.5 * given.contact.shrink();  // theory.md, 8
     }
-    given.contact_step = std::min(given.contact_step, config.time.safety * step);
-  }
+    return config.time.safety * step;
+  };
+  given.contact_step = best_of(w.exec.threads, m.size(), given.contact_step, step_of,
+                               [](double least, double step) { return std::min(least, step); });
   given.first_contact_step = given.contact_step;
   for (const MaterialConfig& each : config.materials) given.first_young.push_back(each.young);
 }
@@ -223,29 +228,6 @@ void place_motions(World& w) {
   copy_to(w.led, led);
   copy_to(w.motion_times, w.prescribed.tables.times);
   copy_to(w.motion_factors, w.prescribed.tables.factors);
-}
-
-void set_linked_pairs(World& w) {
-  Buffer<KeyedIndex> linked(Space::host, w.links());
-  Index link = 0;
-  w.each_set([&](const auto& set) {
-    std::vector<Index> ends_a, ends_b;
-    copy_to(ends_a, set.a);
-    copy_to(ends_b, set.b);
-    for (std::size_t i = 0; i < ends_a.size(); ++i, ++link)  // by places: the order by ids
-      linked.data()[link] = {pair_key(ends_a[i], ends_b[i]), link};
-  });
-  sort_by_key(w.exec, linked);
-  std::vector<Index> starts(static_cast<std::size_t>(w.elements.size()) + 1, 0), partners, links;
-  for (const KeyedIndex& pair : linked.host()) {
-    ++starts[static_cast<std::size_t>(low_id(pair.key)) + 1];
-    partners.push_back(high_id(pair.key));
-    links.push_back(pair.item);
-  }
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  copy_to(w.linked_starts, starts);
-  copy_to(w.linked_partners, partners);
-  copy_to(w.linked_links, links);
 }
 
 namespace {
@@ -319,6 +301,7 @@ void tell_overlaps(const World& w, const Config& config, std::vector<std::string
 
 World made(const Config& config, const Model& model, const Exec& exec) {
   if (model.size() == 0) throw InputError("the case has no elements");
+  const FillingThreads filling(exec.threads);
   World w(exec);
   Case& given = set_up(w);
   given.time = config.time;
@@ -331,7 +314,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   }
   given.shown = config.output.more_fields();
   given.emission = config.emission;
-  std::vector<std::vector<Index>> members = support_members(config, model);
+  std::vector<std::vector<Index>> members = support_members(config, model, exec.threads);
   given.dashpots = dashpots_of(config, model, members);
   tell_narrow_supports(config, model, members, given.warnings);
   for (const std::vector<Index>& own : members) {
@@ -340,18 +323,26 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   }
   const Prescribed held =
       prescribed(config, std::move(members), model.position.size(), given.dashpots, given.masses);
-  set_elements(w, model, held);
-  set_links(w, config, model);
-  set_linked_pairs(w);
-  limit_margins(w, model);
-  set_sets(w, config, model, held);
-  set_starts(w, config, model);
-  set_contacts(w, config, model);
-  derive(w);
+  const auto part = [&exec](const char* name, const auto& work) {
+    const StageTime timed(exec, name);
+    work();
+  };
+  part("set_up_elements", [&] { set_elements(w, model, held); });
+  part("set_up_links", [&] { set_links(w, config, model); });
+  part("set_up_linked_pairs", [&] { set_linked_pairs(w); });
+  part("set_up_sets", [&] {
+    limit_margins(w, model);
+    set_sets(w, config, model, held);
+    set_starts(w, config, model);
+  });
+  part("set_up_contacts", [&] { set_contacts(w, config, model); });
+  part("set_up_derived", [&] { derive(w); });
   find_contacts(w);
   evaluate_forces(w);
-  const EnergyBalance start = balance(w);
-  w.ledger.start = start.kinetic + start.elastic;
+  part("set_up_balance", [&] {
+    const EnergyBalance start = balance(w);
+    w.ledger.start = start.kinetic + start.elastic;
+  });
   tell_overlaps(w, config, given.warnings);
   return w;
 }

@@ -11,6 +11,7 @@
 #include "core/region.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
+#include "exec/filling.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -33,17 +34,18 @@ std::uint8_t fixed_bits(const SupportConfig& support) {
   return static_cast<std::uint8_t>(bits);
 }
 
-std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
-  std::vector<Index> members;
-  for (std::size_t e = 0; e < m.position.size(); ++e) {
-    if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[e])] != s.on) continue;
-    const Vec3& x = m.position[e];
+std::vector<Index> members_of(const SupportConfig& s, const Model& m, int threads) {
+  const auto holds = [&](Index e) {
+    if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[at(e)])] != s.on) return false;
+    const Vec3& x = m.position[at(e)];
     bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
                   x.y <= s.max.y && x.z <= s.max.z;
     if (s.radius > 0.0) inside = inside && in_round(s.center, s.radius, s.around, x);
     if (!s.polygon.empty()) inside = inside && in_polygon(s.polygon, seen_along(s.around, x));
-    if (inside != s.outside) members.push_back(static_cast<Index>(e));
-  }
+    return inside != s.outside;
+  };
+  std::vector<Index> members;
+  copy_to(members, numbers_where(threads, m.size(), holds));
   return members;
 }
 
@@ -95,10 +97,15 @@ class Holding {
       : supports_(config.supports),
         dashpots_(dashpots),
         masses_(masses),
-        walls_(config.walls.size()),
-        owners_(elements, {-1, -1, -1}) {
+        walls_(config.walls.size()) {
     all_.fixed.assign(elements, fixed_none);
+    all_.motion.assign(elements, -1);
     all_.members = std::move(members);
+    for (const std::vector<Index>& own : all_.members)
+      held_.insert(held_.end(), own.begin(), own.end());
+    std::sort(held_.begin(), held_.end());
+    held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
+    owners_.assign(held_.size(), {-1, -1, -1});
     for (std::size_t s = 0; s < supports_.size(); ++s) {
       const std::uint8_t bits = fixed_bits(supports_[s]);
       for (const Index e : all_.members[s]) hold(s, bits, static_cast<std::size_t>(e));
@@ -109,16 +116,13 @@ class Holding {
 
   Prescribed prescribed() {
     std::map<Owners, std::int16_t> known;  // combinations of supports that move
-    for (const Owners& owners : owners_) {
-      Owners moving = owners;
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      Owners moving = owners_[k];
       for (std::size_t axis = 0; axis < 3; ++axis)
         if (moving[axis] >= 0 && speed(moving[axis], axis).is_zero() &&
             !is_servo(moving[axis], axis) && !rubs(moving[axis]))
           moving[axis] = -1;
-      if (moving == Owners{-1, -1, -1}) {
-        all_.motion.push_back(-1);
-        continue;
-      }
+      if (moving == Owners{-1, -1, -1}) continue;
       const auto next = static_cast<std::int16_t>(all_.motions.motions.size());
       const auto [entry, is_new] = known.try_emplace(moving, next);
       if (is_new) {
@@ -128,7 +132,7 @@ class Holding {
             all_.motions.servos.push_back(
                 {walls_ + static_cast<std::size_t>(moving[axis]), next, static_cast<int>(axis)});
       }
-      all_.motion.push_back(entry->second);
+      all_.motion[at(held_[k])] = entry->second;
     }
     return std::move(all_);
   }
@@ -145,6 +149,10 @@ class Holding {
     std::size_t first = 0;
   };
 
+  Owners& owners_of(std::size_t e) {
+    const auto found = std::lower_bound(held_.begin(), held_.end(), static_cast<Index>(e));
+    return owners_[static_cast<std::size_t>(found - held_.begin())];
+  }
   const SupportConfig& support(int s) const { return supports_[static_cast<std::size_t>(s)]; }
   bool is_servo(int s, std::size_t axis) const {
     const SupportServoConfig& servo = support(s).servo;
@@ -202,9 +210,10 @@ class Holding {
     note_rubbed(s, bits, e);
     all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | all | rubbed);
     note_mixed(s, e);
+    Owners& owners = owners_of(e);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if ((bits >> axis & 1) == 0) continue;
-      int& owner = owners_[e][axis];
+      int& owner = owners[axis];
       const int own = static_cast<int>(s);
       if (owner < 0) owner = own;
       if (alike(owner, own, axis)) continue;
@@ -232,7 +241,7 @@ class Holding {
   /// One platen alone holds an element that it rubs: the other two directions are its friction's.
   void note_rubbed(std::size_t s, int bits, std::size_t e) {
     const auto rubbing = [&](int owner) { return owner >= 0 && rubs(owner); };
-    const Owners& owners = owners_[e];
+    const Owners& owners = owners_of(e);
     const int own = static_cast<int>(s);
     const auto* const rough = std::find_if(owners.begin(), owners.end(), rubbing);
     if ((bits & 7) == 0 || (rough == owners.end() && !rubs(own))) return;
@@ -252,11 +261,10 @@ class Holding {
   void note_mixed(std::size_t s, std::size_t e) {
     if ((all_.fixed[e] & fixed_driven) == 0 || (all_.fixed[e] & 63) == 0) return;
     const auto drives = [&](int owner) { return owner >= 0 && is_driven(owner); };
-    if (!drives(static_cast<int>(s)) && std::none_of(owners_[e].begin(), owners_[e].end(), drives))
-      return;
+    const Owners& owners = owners_of(e);
+    if (!drives(static_cast<int>(s)) && std::none_of(owners.begin(), owners.end(), drives)) return;
     const auto pushes = [&](int owner) { return owner >= 0 && support(owner).pushes(); };
-    const bool load =
-        std::any_of(owners_[e].begin(), owners_[e].end(), pushes) || supports_[s].pushes();
+    const bool load = std::any_of(owners.begin(), owners.end(), pushes) || supports_[s].pushes();
     const std::string text =
         fmt::format("support {}: {} shares element {} with one that holds it", supports_[s].name,
                     load ? "one with a force" : "an absorbing support", e);
@@ -267,7 +275,8 @@ class Holding {
   const std::vector<Vec3>& dashpots_;
   const std::vector<double>& masses_;
   std::size_t walls_;
-  std::vector<Owners> owners_;  ///< of each element
+  std::vector<Index> held_;     ///< elements of any support, ascending
+  std::vector<Owners> owners_;  ///< of each of them
   std::map<Clash, Found> clashes_;
   std::vector<std::string> problems_;
   Prescribed all_;
@@ -317,11 +326,12 @@ Vec3 Prescribed::spin_at_start(std::size_t element, const Vec3& own) const {
   return chosen(fixed[element] >> 3, {}, own);
 }
 
-std::vector<std::vector<Index>> support_members(const Config& config, const Model& model) {
+std::vector<std::vector<Index>> support_members(const Config& config, const Model& model,
+                                                int threads) {
   std::vector<std::vector<Index>> members;
   std::vector<std::string> problems;
   for (const SupportConfig& support : config.supports) {
-    members.push_back(members_of(support, model));
+    members.push_back(members_of(support, model, threads));
     if (members.back().empty())
       problems.push_back(
           "support " + support.name +

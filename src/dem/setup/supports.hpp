@@ -45,7 +45,8 @@ struct Prescribed {
 
 /// The elements in the region of each support at the start, ascending.
 /// @throws InputError naming supports that hold none, with the nearest element
-std::vector<std::vector<Index>> support_members(const Config& config, const Model& model);
+std::vector<std::vector<Index>> support_members(const Config& config, const Model& model,
+                                                int threads);
 
 /// The members of a support that links join to elements that it does not hold.
 std::vector<Index> tied_members(const Model& model, const std::vector<Index>& members);

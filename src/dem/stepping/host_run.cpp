@@ -134,14 +134,13 @@ void link_forces_and_sums(World& w) {
       for (; *tile < link_plan.begin[run + 1]; ++tile) {
         const Index from = *tile, to = *(tile + 1);
         for (std::size_t g = 0; g < kernels.size(); ++g) {
-          const std::vector<Index>& starts = w.concrete.groups[g].starts;
-          add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
-                    starts[static_cast<std::size_t>(to)], add);
+          const Index* const starts = w.concrete.groups[g].starts.data();
+          add_links(w.lanes, kernels[g], starts[from], starts[to], add);
         }
         for (std::size_t g = 0; g < of_facets.size(); ++g) {
-          const std::vector<Index>& starts = w.ldpm.groups[g].starts;
-          facet_forces(w.lanes, of_facets[g], edges, starts[static_cast<std::size_t>(from)],
-                       starts[static_cast<std::size_t>(to)], [&](Index first, Index last) {
+          const Index* const starts = w.ldpm.groups[g].starts.data();
+          facet_forces(w.lanes, of_facets[g], edges, starts[from], starts[to],
+                       [&](Index first, Index last) {
                          run_adding(w.lanes, add, edges, first, last,
                                     edges.actions.data + edges.first_action);
                        });

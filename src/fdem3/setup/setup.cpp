@@ -320,7 +320,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   const Config config = with_inertia(asked);
   if (model.size() == 0) throw InputError("the model holds no tetrahedra");
   World w(exec);
-  const ClearingThreads clearing(exec.threads);
+  const FillingThreads filling(exec.threads);
   Case& given = set_up(w);
   given.time = config.time;
   given.gravity = config.gravity.value;

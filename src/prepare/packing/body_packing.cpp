@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "exec/error.hpp"
+#include "exec/tasks.hpp"
 #include "math/constants.hpp"
 
 namespace breccia::prepare {
@@ -67,23 +70,38 @@ class Cutter {
     return open ? static_cast<int>(std::max(0.0, std::ceil((face - 0.5 * edge) / edge))) : 0;
   }
 
-  BodyPacking cut(const Packing& packed, const Container& cell, double volume) const {
+  BodyPacking cut(const Packing& packed, const Container& cell, double volume, int threads) const {
     const Vec3 edge = 2.0 * cell.half(), half = container_.half();
     const int nx = copies(edge.x, half.x, periodic_[0]), ny = copies(edge.y, half.y, periodic_[1]),
               nz = copies(edge.z, half.z, periodic_[2]);
+    const int rows = 2 * ny + 1, columns = 2 * nz + 1, cells = (2 * nx + 1) * rows * columns;
+    const auto place = [&](int copy, std::size_t e) {
+      const int i = copy / (rows * columns) - nx, j = copy / columns % rows - ny;
+      const int k = copy % columns - nz;
+      return packed.position[e] + Vec3{i * edge.x, j * edge.y, k * edge.z};
+    };
+    std::vector<std::size_t> first(static_cast<std::size_t>(cells) + 1, 0);  // of each copy
+    for_each_task(threads, cells, [&](int copy) {
+      for (std::size_t e = 0; e < packed.position.size(); ++e)
+        if (holds(place(copy, e))) ++first[static_cast<std::size_t>(copy) + 1];
+    });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    if (first.back() > at(std::numeric_limits<Index>::max()))
+      throw InputError("a body holds at most 2,147,483,647 elements");
     BodyPacking body;
+    body.position.resize(first.back());
+    body.radius.resize(first.back());
+    for_each_task(threads, cells, [&](int copy) {
+      std::size_t to = first[static_cast<std::size_t>(copy)];
+      for (std::size_t e = 0; e < packed.position.size(); ++e) {
+        const Vec3 x = place(copy, e);
+        if (!holds(x)) continue;
+        body.position[to] = x;
+        body.radius[to++] = packed.radius[e];
+      }
+    });
     double solid = 0.0;
-    for (int i = -nx; i <= nx; ++i)
-      for (int j = -ny; j <= ny; ++j)
-        for (int k = -nz; k <= nz; ++k)
-          for (std::size_t e = 0; e < packed.position.size(); ++e) {
-            const Vec3 at = packed.position[e] + Vec3{i * edge.x, j * edge.y, k * edge.z};
-            if (!holds(at)) continue;
-            const double r = packed.radius[e];
-            body.position.push_back(at);
-            body.radius.push_back(r);
-            solid += 4.0 / 3.0 * pi * r * r * r;
-          }
+    for (const double r : body.radius) solid += 4.0 / 3.0 * pi * r * r * r;
     body.compactness = solid / volume;
     return body;
   }
@@ -166,12 +184,12 @@ std::vector<std::string> pack_problems(const BodyConfig& body) {
 }
 
 BodyPacking pack_body(const BodyConfig& body, const std::vector<Capsule>& bars, double bars_volume,
-                      const Random& random) {
+                      const Random& random, int threads) {
   const PackingTask task = packing_task(body, bars, bars_volume, random);
   if (const std::string problem = misfit(task, packing_radii(task)); !problem.empty())
     throw InputError(fmt::format("body.{}.pack.{}: {}", body.name,
                                  body.pack.sieves.empty() ? "count" : "sieves", problem));
-  Packing packing = pack(task);
+  const Packing packing = pack(task, threads);
   if (body.pack.porosity > 0.0 && packing.overlap > overlap_tolerance)
     throw InputError(fmt::format(
         "body.{}.pack.porosity = {:.4g} is not reached: pushed apart as far as they go, elements "
@@ -180,8 +198,10 @@ BodyPacking pack_body(const BodyConfig& body, const std::vector<Capsule>& bars, 
         "size have 0.37 at least",
         body.name, body.pack.porosity, packing.overlap, overlap_tolerance));
   if (!is_cut(body))
-    return {std::move(packing.position), std::move(packing.radius), compactness_of(body.pack)};
-  BodyPacking cut = Cutter(body).cut(packing, task.container, container_of(body).volume());
+    return {{packing.position.begin(), packing.position.end()},
+            {packing.radius.begin(), packing.radius.end()},
+            compactness_of(body.pack)};
+  BodyPacking cut = Cutter(body).cut(packing, task.container, container_of(body).volume(), threads);
   if (cut.position.empty())
     throw InputError(fmt::format(
         "body.{}.pack: no element of the cell has its centre in the body; it needs more elements",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dem/setup/config.hpp"
+#include "exec/plain_vector.hpp"
 #include "prepare/packing/packing.hpp"
 
 namespace breccia::prepare {
@@ -26,17 +27,18 @@ std::vector<std::string> pack_problems(const dem::BodyConfig& body);
 
 /// Elements of a body about its centre.
 struct BodyPacking {
-  std::vector<Vec3> position;  ///<  [m]
-  std::vector<double> radius;  ///<  [m]
+  PlainVector<Vec3> position;  ///<  [m]
+  PlainVector<double> radius;  ///<  [m]
   double compactness = 0.0;    ///< their volume over that of the body  [-]
 };
 
 /// Packs a body. In periodic directions there are no faces: the cell (the body itself unless
 /// pack.cell is given) is repeated, and of it stays what has its centre in the body.
 ///
+/// @param threads  any number of them gives the same bits
 /// @throws InputError names the body if its largest element does not fit, or if elements overlap
 ///         where a porosity is asked for
 BodyPacking pack_body(const dem::BodyConfig& body, const std::vector<Capsule>& bars,
-                      double bars_volume, const Random& random);
+                      double bars_volume, const Random& random, int threads = 1);
 
 }  // namespace breccia::prepare

@@ -2,9 +2,9 @@
 // A uniform grid of cells over points: which points are in a box, in a fixed order.
 
 #include <algorithm>
-#include <vector>
+#include <span>
 
-#include "exec/types.hpp"
+#include "exec/buffer.hpp"
 #include "math/vec.hpp"
 
 namespace breccia::prepare {
@@ -14,10 +14,10 @@ namespace breccia::prepare {
 class CellGrid {
  public:
   /// @param edge  wanted edge length of a cell, > 0; larger when the points are far apart  [m]
-  CellGrid(const std::vector<Vec3>& points, double edge);
+  CellGrid(std::span<const Vec3> points, double edge, int threads = 1);
 
   /// Indices of the points in the order of the cells.
-  const std::vector<Index>& order() const { return items_; }
+  std::span<const Index> order() const { return items_.host(); }
 
   /// visit(index) for every point in cells that the box around `center` meets: all points within
   /// `reach` in each direction, and some more.
@@ -32,9 +32,8 @@ class CellGrid {
     for (int x = x0; x <= x1; ++x) {
       for (int y = y0; y <= y1; ++y) {
         const Index row = (x * size_[1] + y) * size_[2];
-        const Index end = start_[static_cast<std::size_t>(row + z1 + 1)];
-        for (Index k = start_[static_cast<std::size_t>(row + z0)]; k < end; ++k)
-          visit(items_[static_cast<std::size_t>(k)]);
+        const Index end = start_.data()[row + z1 + 1];
+        for (Index k = start_.data()[row + z0]; k < end; ++k) visit(items_.data()[k]);
       }
     }
   }
@@ -49,7 +48,7 @@ class CellGrid {
   Vec3 low_{};
   double inverse_edge_ = 1.0;
   int size_[3] = {1, 1, 1};
-  std::vector<Index> start_, items_;
+  Buffer<Index> start_, items_;
 };
 
 }  // namespace breccia::prepare

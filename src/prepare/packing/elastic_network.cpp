@@ -1,13 +1,20 @@
 #include "prepare/packing/elastic_network.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "dem/setup/materials.hpp"
+#include "exec/plain_vector.hpp"
+#include "exec/tasks.hpp"
 
 namespace breccia::prepare {
 namespace {
 
 using Six = std::array<double, 6>;
+
+/// Springs by threads go through memory twice, which two threads gain little by.
+constexpr int fewest_for_springs = 3;
 
 Vec3 first(const Six& s) {
   return {s[0], s[1], s[2]};
@@ -31,8 +38,8 @@ double total(std::size_t members, const Term& term) {
 }  // namespace
 
 ElasticNetwork::ElasticNetwork(const dem::Model& model, const dem::Config& config,
-                               std::vector<Index> members)
-    : members_(std::move(members)) {
+                               std::vector<Index> members, int threads)
+    : members_(std::move(members)), threads_(threads) {
   std::vector<Index> place(model.position.size(), -1);
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const auto e = static_cast<std::size_t>(members_[k]);
@@ -53,21 +60,67 @@ ElasticNetwork::ElasticNetwork(const dem::Model& model, const dem::Config& confi
                         0.5 * (d + rb - ra) / mean_radius_, kn, kt,
                         material.rolling_stiffness * kt * r * r});
   }
+  if (threads_ < fewest_for_springs) return;
+  first_.assign(members_.size() + 1, 0);
+  first_visitor_ = first_;
+  for (const Spring& s : springs_) {
+    ++first_[static_cast<std::size_t>(s.a) + 1];
+    ++first_visitor_[static_cast<std::size_t>(s.b) + 1];
+  }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::partial_sum(first_visitor_.begin(), first_visitor_.end(), first_visitor_.begin());
+  std::vector<std::size_t> next = first_visitor_;
+  visitor_.resize(springs_.size());
+  for (std::size_t i = 0; i < springs_.size(); ++i)
+    visitor_[next[static_cast<std::size_t>(springs_[i].b)]++] = i;
+}
+
+template <class Work>
+void ElasticNetwork::each_block(std::size_t count, const Work& work) const {
+  constexpr std::size_t at_once = 512;
+  for_each_task(threads_, static_cast<int>((count + at_once - 1) / at_once), [&](int block) {
+    const std::size_t begin = static_cast<std::size_t>(block) * at_once;
+    work(begin, std::min(count, begin + at_once));
+  });
+}
+
+ElasticNetwork::Action ElasticNetwork::action_of(const Spring& s, const Displacements& at) const {
+  const Six& a = at[static_cast<std::size_t>(s.a)];
+  const Six& b = at[static_cast<std::size_t>(s.b)];
+  const Vec3 turn_a = last(a), turn_b = last(b), n = s.normal;
+  const Vec3 du = first(b) - first(a) - cross(s.arm_a * turn_a + s.arm_b * turn_b, n);
+  const Vec3 force =
+      s.shear_stiffness * du + ((s.normal_stiffness - s.shear_stiffness) * dot(n, du)) * n;
+  const Vec3 moment = s.turn_stiffness * (turn_b - turn_a);
+  const Vec3 lever = cross(n, force);
+  return {force, -(s.arm_a * lever) - moment, moment - s.arm_b * lever};
 }
 
 void ElasticNetwork::add_forces(const Displacements& at, Displacements& sum) const {
+  if (threads_ >= fewest_for_springs) return add_forces_by_threads(at, sum);
   for (const Spring& s : springs_) {
-    const Six& a = at[static_cast<std::size_t>(s.a)];
-    const Six& b = at[static_cast<std::size_t>(s.b)];
-    const Vec3 turn_a = last(a), turn_b = last(b), n = s.normal;
-    const Vec3 du = first(b) - first(a) - cross(s.arm_a * turn_a + s.arm_b * turn_b, n);
-    const Vec3 force =
-        s.shear_stiffness * du + ((s.normal_stiffness - s.shear_stiffness) * dot(n, du)) * n;
-    const Vec3 moment = s.turn_stiffness * (turn_b - turn_a);
-    const Vec3 lever = cross(n, force);
-    add(sum[static_cast<std::size_t>(s.a)], -force, -(s.arm_a * lever) - moment);
-    add(sum[static_cast<std::size_t>(s.b)], force, moment - s.arm_b * lever);
+    const Action action = action_of(s, at);
+    add(sum[static_cast<std::size_t>(s.a)], -action.force, action.on_a);
+    add(sum[static_cast<std::size_t>(s.b)], action.force, action.on_b);
   }
+}
+
+/// Springs first, then sums of members in the order of the springs: those that come from lower
+/// members have lower numbers than a member's own.
+void ElasticNetwork::add_forces_by_threads(const Displacements& at, Displacements& sum) const {
+  PlainVector<Action> actions;
+  actions.resize(springs_.size());
+  each_block(springs_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) actions[i] = action_of(springs_[i], at);
+  });
+  each_block(members_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      for (std::size_t v = first_visitor_[k]; v < first_visitor_[k + 1]; ++v)
+        add(sum[k], actions[visitor_[v]].force, actions[visitor_[v]].on_b);
+      for (std::size_t i = first_[k]; i < first_[k + 1]; ++i)
+        add(sum[k], -actions[i].force, actions[i].on_a);
+    }
+  });
 }
 
 Displacements ElasticNetwork::diagonal() const {
@@ -124,19 +177,24 @@ Displacements ElasticNetwork::relaxed(const Held& held, const Displacements& loa
   double before = 0.0;
   for (std::size_t pass = 0; pass < 50 * count && now > enough && now > 0.0; ++pass) {
     const double keep = before > 0.0 ? now / before : 0.0;
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t c = 0; c < 6; ++c)
-        step[i][c] = is_free(i, c) ? residual[i][c] / stiffness[i][c] + keep * step[i][c] : 0.0;
-    internal.assign(count, {});
+    each_block(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        internal[i] = {};
+        for (std::size_t c = 0; c < 6; ++c)
+          step[i][c] = is_free(i, c) ? residual[i][c] / stiffness[i][c] + keep * step[i][c] : 0.0;
+      }
+    });
     add_forces(step, internal);
     const double along = now / total(count, [&](std::size_t i, std::size_t c) {
                            return step[i][c] * internal[i][c];
                          });
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t c = 0; c < 6; ++c) {
-        x[i][c] += along * step[i][c];
-        if (is_free(i, c)) residual[i][c] -= along * internal[i][c];
-      }
+    each_block(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t c = 0; c < 6; ++c) {
+          x[i][c] += along * step[i][c];
+          if (is_free(i, c)) residual[i][c] -= along * internal[i][c];
+        }
+    });
     before = now;
     now = weighted();
   }

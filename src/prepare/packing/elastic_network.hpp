@@ -20,7 +20,10 @@ using Displacements = std::vector<std::array<double, 6>>;
 /// Turns are counted times the mean radius, so that all unknowns are lengths.
 class ElasticNetwork {
  public:
-  ElasticNetwork(const dem::Model& model, const dem::Config& config, std::vector<Index> members);
+  /// @param members  ascending
+  /// @param threads  any number of them gives the same bits
+  ElasticNetwork(const dem::Model& model, const dem::Config& config, std::vector<Index> members,
+                 int threads = 1);
 
   const std::vector<Index>& members() const { return members_; }
   double mean_radius() const { return mean_radius_; }
@@ -47,11 +50,23 @@ class ElasticNetwork {
     Vec3 normal;
     double arm_a, arm_b, normal_stiffness, shear_stiffness, turn_stiffness;
   };
+  /// What a spring does to its ends: the force on b, and torques over the mean radius.
+  struct Action {
+    Vec3 force, on_a, on_b;
+  };
+  Action action_of(const Spring& s, const Displacements& at) const;
   void add_forces(const Displacements& at, Displacements& sum) const;
+  void add_forces_by_threads(const Displacements& at, Displacements& sum) const;
+  /// work(begin, end) for blocks of `count` members or springs.
+  template <class Work>
+  void each_block(std::size_t count, const Work& work) const;
   Displacements diagonal() const;
 
   std::vector<Index> members_;
-  std::vector<Spring> springs_;
+  std::vector<Spring> springs_;  ///< by a, then b
+  int threads_;
+  // By threads: first spring of each member as a, and all springs that have it as b, ascending.
+  std::vector<std::size_t> first_, first_visitor_, visitor_;
   double mean_radius_ = 0.0;
 };
 

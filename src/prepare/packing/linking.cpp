@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
+#include <utility>
 
+#include "core/rows.hpp"
 #include "exec/error.hpp"
+#include "exec/filling.hpp"
+#include "exec/sort_scan.hpp"
 #include "prepare/packing/cell_grid.hpp"
 
 namespace breccia::prepare {
@@ -16,9 +21,15 @@ constexpr double widest_range = 3.0;
 /// Overlaps below this share of the smaller radius are rounding  [-]
 constexpr double rounding = 1e-6;
 
+/// Two elements that may be linked.
 struct Candidate {
-  Index a, b;    ///< a bar's element first; else a < b
+  Index a, b;    ///< a < b
   double ratio;  ///< distance over the sum of radii  [-]
+  dem::LinkKind kind;
+  std::int16_t material;
+  bool always = false;  ///< along a bar, or one of the four nearest of a bar's element
+
+  dem::Model::Link link() const { return {a, b, kind, material}; }
 };
 
 double ratio_of(const dem::Model& m, Index a, Index b) {
@@ -26,140 +37,186 @@ double ratio_of(const dem::Model& m, Index a, Index b) {
   return norm(m.position[j] - m.position[i]) / (m.radius[i] + m.radius[j]);
 }
 
-std::vector<std::vector<Index>> elements_by_body(const dem::Model& m, std::size_t bodies) {
-  std::vector<std::vector<Index>> members(bodies);
-  for (Index i = 0; i < m.size(); ++i)
-    members[static_cast<std::size_t>(m.group[static_cast<std::size_t>(i)])].push_back(i);
-  return members;
+Buffer<Index> members_of(const dem::Model& m, std::size_t body, int threads) {
+  return numbers_where(threads, m.size(),
+                       [&](Index i) { return static_cast<std::size_t>(m.group[at(i)]) == body; });
 }
 
 /// Some elements of a model and the grid that finds them.
 struct Neighbourhood {
   const dem::Model& model;
-  std::vector<Index> members;
+  Buffer<Index> members;
   double largest = 0.0, mean = 0.0;  ///< radius  [m]
   CellGrid grid;
 
-  Neighbourhood(const dem::Model& m, std::vector<Index> elements)
-      : model(m), members(std::move(elements)), grid(make_grid()) {}
+  Neighbourhood(const dem::Model& m, Buffer<Index> elements, int threads)
+      : model(m), members(std::move(elements)), grid(make_grid(threads)) {}
 
-  CellGrid make_grid() {
-    std::vector<Vec3> points;
+  CellGrid make_grid(int threads) {
+    Buffer<Vec3> points;
+    fill_items(points, members.size(), threads,
+               [this](Index k) { return model.position[at(members.data()[k])]; });
     double sum = 0.0;
-    for (const Index i : members) {
-      const auto e = static_cast<std::size_t>(i);
-      points.push_back(model.position[e]);
-      largest = std::max(largest, model.radius[e]);
-      sum += model.radius[e];
+    for (const Index e : members.host()) {
+      largest = std::max(largest, model.radius[at(e)]);
+      sum += model.radius[at(e)];
     }
     mean = members.empty() ? 1.0 : sum / static_cast<double>(members.size());
-    return {points, 2.0 * mean};
+    return {std::as_const(points).host(), 2.0 * mean, threads};
   }
 
   /// visit(element) for each member whose centre is within `reach` of `center`, and some more.
   template <class Visit>
   void visit(const Vec3& center, double reach, Visit&& visit) const {
-    grid.visit(center, reach, [&](Index item) { visit(members[static_cast<std::size_t>(item)]); });
+    grid.visit(center, reach, [&](Index item) { visit(members.data()[item]); });
   }
 };
 
+/// What runs of elements have found, in the order of the elements.
+using Found = std::vector<PlainVector<Candidate>>;
+
+/// add(member, found) for each of the members.
+template <class Add>
+void search(const Buffer<Index>& members, int threads, Found& found, const Add& add) {
+  for (auto& run : of_runs(threads, members.size(), [&](Index begin, Index end) {
+         constexpr std::size_t many = 8;  // candidates of one; memory that is not written is free
+         PlainVector<Candidate> own;
+         own.reserve(many * at(end - begin));
+         for (Index k = begin; k < end; ++k) add(members.data()[k], own);
+         return own;
+       }))
+    found.push_back(std::move(run.found));
+}
+
 /// Each pair of members within `range` once.
-std::vector<Candidate> concrete_candidates(const Neighbourhood& body, double range) {
+void find_within(const BodyLinks& links, const Neighbourhood& body, double range, int threads,
+                 Found& found) {
   const dem::Model& m = body.model;
-  std::vector<Candidate> found;
-  for (const Index i : body.members) {
-    const double mine = m.radius[static_cast<std::size_t>(i)];
+  search(body.members, threads, found, [&](Index i, PlainVector<Candidate>& own) {
+    const double mine = m.radius[at(i)];
     // Each pair is found from its larger element, so that few large ones cost little.
-    body.visit(m.position[static_cast<std::size_t>(i)], range * 2.0 * mine, [&](Index j) {
-      const double other = m.radius[static_cast<std::size_t>(j)];
+    body.visit(m.position[at(i)], range * 2.0 * mine, [&](Index j) {
+      const double other = m.radius[at(j)];
       if (other > mine || (other == mine && j >= i)) return;
       const double ratio = ratio_of(m, i, j);
-      if (ratio <= range) found.push_back({std::min(i, j), std::max(i, j), ratio});
+      if (ratio <= range)
+        own.push_back({std::min(i, j), std::max(i, j), ratio, links.link, links.material});
     });
-  }
-  return found;
+  });
 }
 
 /// The partners of a bar's element within `range`, nearest first, and four at least.
-std::vector<Candidate> partners(const Neighbourhood& host, Index steel, double range) {
+std::vector<std::pair<double, Index>> partners(const Neighbourhood& host, Index steel,
+                                               double range) {
   const dem::Model& m = host.model;
-  const auto s = static_cast<std::size_t>(steel);
-  const std::size_t least =
-      std::min(host.members.size(), static_cast<std::size_t>(least_interface_links));
-  std::vector<Candidate> found;
+  const auto least = std::min(at(host.members.size()), at(least_interface_links));
+  std::vector<std::pair<double, Index>> found;
   for (double reach = range;; reach *= 1.5) {
     found.clear();
-    host.visit(m.position[s], reach * (m.radius[s] + host.largest), [&](Index c) {
+    host.visit(m.position[at(steel)], reach * (m.radius[at(steel)] + host.largest), [&](Index c) {
       const double ratio = ratio_of(m, steel, c);
-      if (ratio <= reach) found.push_back({steel, c, ratio});
+      if (ratio <= reach) found.emplace_back(ratio, c);
     });
     if (found.size() >= least) break;
   }
-  std::sort(found.begin(), found.end(), [](const Candidate& p, const Candidate& q) {
-    return p.ratio != q.ratio ? p.ratio < q.ratio : p.b < q.b;
-  });
+  std::sort(found.begin(), found.end());
   std::size_t kept = found.size();
-  while (kept > least && found[kept - 1].ratio > range) --kept;
+  while (kept > least && found[kept - 1].first > range) --kept;
   found.resize(kept);
   return found;
 }
 
-/// Everything that may be linked within a widest range, ready to be counted for a narrower one.
+/// Links along a bar, and with the elements around it.
+void find_along(const BodyLinks& links, const Buffer<Index>& bar, const Neighbourhood& host,
+                double range, int threads, Found& found) {
+  const dem::Model& m = host.model;
+  search(bar, threads, found, [&](Index s, PlainVector<Candidate>& own) {
+    const auto add = [&](Index other, double ratio, dem::LinkKind kind, std::int16_t material,
+                         bool always) {
+      own.push_back({std::min(s, other), std::max(s, other), ratio, kind, material, always});
+    };
+    const Index next = m.bar_next[at(s)];
+    if (next >= 0) add(next, 0.0, dem::LinkKind::steel, links.material, true);
+    int rank = 0;
+    for (const auto& [ratio, c] : partners(host, s, range))
+      add(c, ratio, dem::LinkKind::interface, links.interface, rank++ < least_interface_links);
+  });
+}
+
+/// Everything that may be linked within a range, ready to be counted for a narrower one.
 struct Candidates {
-  std::vector<dem::Model::Link> always;  ///< along bars, and the four nearest of bars' elements
-  std::vector<dem::Model::Link> link;    ///< the others, by ascending ratio
-  std::vector<double> ratio;
+  Found found;
+  std::size_t always = 0;
+  Buffer<std::uint64_t> ratios;  ///< bits of those of all others, ascending; if they are counted
 
   std::size_t count(double range) const {
-    return always.size() + static_cast<std::size_t>(
-                               std::upper_bound(ratio.begin(), ratio.end(), range) - ratio.begin());
+    const auto all = ratios.host();
+    return always + static_cast<std::size_t>(std::upper_bound(all.begin(), all.end(),
+                                                              std::bit_cast<std::uint64_t>(range)) -
+                                             all.begin());
+  }
+  /// Numbers that are not negative sort as their bits do.
+  void sort_ratios(int threads) {
+    std::vector<Index> first{0};  // of each run
+    for (const auto& run : found) {
+      const auto kept =
+          std::count_if(run.begin(), run.end(), [](const Candidate& c) { return !c.always; });
+      first.push_back(first.back() + static_cast<Index>(kept));
+      always += run.size() - static_cast<std::size_t>(kept);
+    }
+    ratios.resize_unfilled(first.back());
+    for_each_task(threads, static_cast<int>(found.size()), [&](int k) {
+      std::uint64_t* to = ratios.data() + first[at(k)];
+      for (const Candidate& c : found[at(k)])
+        if (!c.always) *to++ = std::bit_cast<std::uint64_t>(c.ratio);
+    });
+    Buffer<std::uint64_t> scratch;
+    sort_keys({.threads = threads}, ratios, scratch, 64);
   }
 };
 
-dem::Model::Link make_link(const Candidate& c, dem::LinkKind kind, std::int16_t material) {
-  return {std::min(c.a, c.b), std::max(c.a, c.b), kind, material};
-}
-
-Candidates find_candidates(const dem::Model& m, const std::vector<BodyLinks>& bodies,
-                           double range) {
-  const auto members = elements_by_body(m, bodies.size());
+Candidates find_candidates(const dem::Model& m, const std::vector<BodyLinks>& bodies, double range,
+                           int threads) {
   Candidates all;
-  std::vector<std::pair<double, dem::Model::Link>> ranged;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const BodyLinks& body = bodies[k];
     if (body.kind == BodyLinks::Kind::range) {
-      for (const Candidate& c : concrete_candidates({m, members[k]}, range))
-        ranged.emplace_back(c.ratio, make_link(c, body.link, body.material));
+      const Neighbourhood own(m, members_of(m, k, threads), threads);
+      find_within(body, own, range, threads, all.found);
     } else if (body.kind == BodyLinks::Kind::bars) {
-      std::vector<Index> around = members[static_cast<std::size_t>(body.host)];
-      if (body.within)
-        std::erase_if(
-            around, [&](Index e) { return !body.within(m.position[static_cast<std::size_t>(e)]); });
-      const Neighbourhood host(m, std::move(around));
-      for (const Index s : members[k]) {
-        const Index next = m.bar_next[static_cast<std::size_t>(s)];
-        if (next >= 0)
-          all.always.push_back(make_link({s, next, 0.0}, dem::LinkKind::steel, body.material));
-        int rank = 0;
-        for (const Candidate& c : partners(host, s, range)) {
-          const auto link = make_link(c, dem::LinkKind::interface, body.interface);
-          if (rank++ < least_interface_links)
-            all.always.push_back(link);
-          else
-            ranged.emplace_back(c.ratio, link);
-        }
+      Buffer<Index> around = members_of(m, static_cast<std::size_t>(body.host), threads);
+      if (body.within) {
+        std::vector<Index> kept;
+        for (const Index e : around.host())
+          if (body.within(m.position[at(e)])) kept.push_back(e);
+        copy_to(around, kept);
       }
+      const Neighbourhood host(m, std::move(around), threads);
+      find_along(body, members_of(m, k, threads), host, range, threads, all.found);
     }
   }
-  std::sort(ranged.begin(), ranged.end(), [](const auto& p, const auto& q) {
-    if (p.first != q.first) return p.first < q.first;
-    return p.second.a != q.second.a ? p.second.a < q.second.a : p.second.b < q.second.b;
-  });
-  for (const auto& [ratio, link] : ranged) {
-    all.ratio.push_back(ratio);
-    all.link.push_back(link);
-  }
   return all;
+}
+
+/// The candidates within a range as links, sorted by a, then b.
+void put_links(dem::Model& model, const Candidates& all, double range, int threads) {
+  const auto each = [&](const auto& visit) {
+    for_each_task(threads, static_cast<int>(all.found.size()), [&](int k) {
+      for (const Candidate& c : all.found[at(k)])
+        if (c.always || c.ratio <= range) visit(c);
+    });
+  };
+  Buffer<Index> starts(Space::host, model.size() + 1);
+  each([&](const Candidate& c) { count_up(starts.data()[c.a]); });
+  model.links.clear();
+  model.links.resize(at(exclusive_scan({.threads = threads}, starts)));
+  Buffer<Index> next(starts);
+  each([&](const Candidate& c) { model.links[at(count_up(next.data()[c.a]))] = c.link(); });
+  each_portion(threads, model.size(), [&](Index begin, Index end) {
+    for (Index e = begin; e < end; ++e)
+      sort_row(model.links.data() + starts.data()[e], starts.data()[e + 1] - starts.data()[e],
+               [](const dem::Model::Link& p, const dem::Model::Link& q) { return p.b < q.b; });
+  });
 }
 
 /// The range whose number of links is nearest to `wanted`, by bisection.
@@ -186,17 +243,19 @@ bool overlap(const dem::Model& model, const dem::Model::Link& link) {
 }  // namespace
 
 void link_elements(dem::Model& model, const std::vector<BodyLinks>& bodies,
-                   const dem::LinksConfig& config) {
+                   const dem::LinksConfig& config, int threads) {
+  const FillingThreads filling(threads);
   Candidates all;
   double range = config.range;
   const std::size_t wanted = wanted_links(model, config);
   if (wanted == 0) {
-    all = find_candidates(model, bodies, range);
+    all = find_candidates(model, bodies, range, threads);
   } else {
     double widest = 0.0;
     for (const double tried : {1.6, 2.1, widest_range}) {
       widest = tried;
-      all = find_candidates(model, bodies, widest);
+      all = find_candidates(model, bodies, widest, threads);
+      all.sort_ratios(threads);
       if (all.count(widest) >= wanted) break;
     }
     if (all.count(1.0) > wanted || all.count(widest) < wanted)
@@ -207,17 +266,30 @@ void link_elements(dem::Model& model, const std::vector<BodyLinks>& bodies,
     range = solve_range(all, wanted, widest);
   }
   model.interaction_range = range;
-  model.links = all.always;
-  for (std::size_t k = 0; k < all.link.size() && all.ratio[k] <= range; ++k)
-    model.links.push_back(all.link[k]);
-  std::sort(model.links.begin(), model.links.end(),
-            [](const auto& p, const auto& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+  put_links(model, all, range, threads);
 }
 
-std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<BodyLinks>& bodies) {
-  std::vector<Index> everyone(static_cast<std::size_t>(m.size()));
-  for (Index i = 0; i < m.size(); ++i) everyone[static_cast<std::size_t>(i)] = i;
-  const Neighbourhood model(m, std::move(everyone));
+namespace {
+
+/// The overlaps between two bodies, by their numbers.
+struct Deepest {
+  double depth = 0.0;
+  Index a = 0, b = 0;
+  int pairs = 0;
+
+  void add(const Deepest& other) {
+    const int both = pairs + other.pairs;
+    if (other.depth > depth || (other.depth == depth && other.a < a)) *this = other;
+    pairs = both;
+  }
+};
+using Overlaps = std::map<std::pair<int, int>, Deepest>;
+
+/// Pairs of elements that overlap without a link.
+Overlaps deepest_overlaps(const dem::Model& m, const std::vector<BodyLinks>& bodies, int threads) {
+  Buffer<Index> everyone;
+  fill_items(everyone, m.size(), threads, [](Index i) { return i; });
+  const Neighbourhood model(m, std::move(everyone), threads);
   const auto linked = [&](Index a, Index b) {
     const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
     const BodyLinks& p = bodies[static_cast<std::size_t>(m.group[i])];
@@ -227,27 +299,32 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
              m.bar_next[i] == b || m.bar_previous[i] == b;
     return p.host == m.group[j] || q.host == m.group[i];
   };
-  struct Deepest {
-    double depth = 0.0;
-    Index a = 0, b = 0;
-    int pairs = 0;
-  };
-  std::map<std::pair<int, int>, Deepest> found;
-  for (const Index i : model.members) {
-    const double mine = m.radius[static_cast<std::size_t>(i)];
-    model.visit(m.position[static_cast<std::size_t>(i)], 2.0 * mine, [&](Index j) {
-      const double other = m.radius[static_cast<std::size_t>(j)];
-      if (other > mine || (other == mine && j >= i)) return;
-      const double depth = (1.0 - ratio_of(m, i, j)) * (mine + other);
-      if (depth <= rounding * other || linked(i, j)) return;
-      const Index a = std::min(i, j), b = std::max(i, j);
-      const int p = m.group[static_cast<std::size_t>(a)], q = m.group[static_cast<std::size_t>(b)];
-      Deepest& pair = found[{std::min(p, q), std::max(p, q)}];
-      ++pair.pairs;
-      if (depth > pair.depth || (depth == pair.depth && a < pair.a))
-        pair = {depth, a, b, pair.pairs};
-    });
-  }
+  Overlaps found;
+  for (const auto& run : of_runs(threads, m.size(), [&](Index begin, Index end) {
+         Overlaps own;
+         for (Index i = begin; i < end; ++i) {
+           const double mine = m.radius[at(i)];
+           model.visit(m.position[at(i)], 2.0 * mine, [&](Index j) {
+             const double other = m.radius[at(j)];
+             if (other > mine || (other == mine && j >= i)) return;
+             const double depth = (1.0 - ratio_of(m, i, j)) * (mine + other);
+             if (depth <= rounding * other || linked(i, j)) return;
+             const Index a = std::min(i, j), b = std::max(i, j);
+             const int p = m.group[at(a)], q = m.group[at(b)];
+             own[{std::min(p, q), std::max(p, q)}].add({depth, a, b, 1});
+           });
+         }
+         return own;
+       }))
+    for (const auto& [groups, pair] : run.found) found[groups].add(pair);
+  return found;
+}
+
+}  // namespace
+
+std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<BodyLinks>& bodies,
+                                       int threads) {
+  const Overlaps found = deepest_overlaps(m, bodies, threads);
   std::vector<std::string> problems;
   for (const auto& [groups, pair] : found) {
     const auto name = [&](Index e) {

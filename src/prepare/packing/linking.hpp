@@ -37,14 +37,15 @@ inline constexpr int least_interface_links = 4;
 /// that gives the wanted number of links as nearly as the packing allows. Sets links (sorted by a,
 /// then b; a < b) and interaction_range.
 ///
+/// @param threads  any number of them gives the same links
 /// @throws InputError if no gamma_int in [1, 3] gives the wanted number
 void link_elements(dem::Model& model, const std::vector<BodyLinks>& bodies,
-                   const dem::LinksConfig& config);
+                   const dem::LinksConfig& config, int threads = 1);
 
 /// Overlaps that would push from the first step on, because no link makes them stress-free: one
 /// sentence for every two bodies (or one, for grains), naming the deepest pair. Empty: none.
 std::vector<std::string> free_overlaps(const dem::Model& model,
-                                       const std::vector<BodyLinks>& bodies);
+                                       const std::vector<BodyLinks>& bodies, int threads = 1);
 
 /// Takes out links, and the facets that they have. A bond between elements that overlap stays,
 /// parted: a contact in its place would push with an overlap that the packing put there.

@@ -140,7 +140,7 @@ std::string misfit(const PackingTask& task, const std::vector<double>& radius) {
                      task.count, largest);
 }
 
-Packing pack(const PackingTask& task) {
+Packing pack(const PackingTask& task, int threads) {
   std::vector<double> radius = packing_radii(task);
   if (const std::string problem = misfit(task, radius); !problem.empty()) throw InputError(problem);
   std::vector<Vec3> position;
@@ -149,14 +149,15 @@ Packing pack(const PackingTask& task) {
     position.push_back(random_centre(task, i, radius[i]));
   }
 
-  SoftSpheres spheres(task, std::move(position), std::move(radius));
+  SoftSpheres spheres(task, std::move(position), std::move(radius), threads);
   Packing packing;
   // Grown radii that overlap by less than their growth belong to spheres that do not overlap.
   const double free_of_overlap = 2.0 * (growth - 1.0) / growth;
   double before = 0.0;
   for (; packing.iterations < most_iterations; ++packing.iterations) {
-    if (spheres.push() <= free_of_overlap) break;
-    if (packing.iterations % energy_window == 0) {
+    const bool looks = packing.iterations % energy_window == 0;
+    if (spheres.push(looks) <= free_of_overlap) break;
+    if (looks) {
       if (packing.iterations > 0 && spheres.energy() > (1.0 - energy_fall) * before) break;
       before = spheres.energy();
     }

@@ -85,7 +85,8 @@ std::string misfit(const PackingTask& task, const std::vector<double>& radius);
 /// 2006, "Structural relaxation made simple". Only + - * / sqrt: same bits on any machine.
 /// Cost: about 0.1 ms a sphere at compactness 0.6.
 ///
+/// @param threads  any number of them gives the same bits
 /// @throws InputError if the largest sphere does not fit into the container
-Packing pack(const PackingTask& task);
+Packing pack(const PackingTask& task, int threads = 1);
 
 }  // namespace breccia::prepare

@@ -1,7 +1,10 @@
 #include "prepare/packing/soft_spheres.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "exec/tasks.hpp"
 #include "prepare/packing/cell_grid.hpp"
 
 namespace breccia::prepare {
@@ -14,6 +17,9 @@ constexpr double first_mixing = 0.1, mixing_decay = 0.99;
 constexpr int patience = 5;
 
 constexpr double wall_stiffness = 2.0;
+
+/// Pairs by threads go through memory twice, which two threads gain nothing by.
+constexpr int fewest_threads = 3;
 
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
@@ -39,8 +45,22 @@ void each_image(const Vec3& x, const double (&period)[3], double reach, const Vi
   }
 }
 
+/// Spheres that one thread takes at a time.
+constexpr std::size_t spheres_at_once = 256;
+std::size_t blocks_of(std::size_t count) {
+  return (count + spheres_at_once - 1) / spheres_at_once;
+}
+/// work(block, begin, end) for each block of spheres.
+template <class Work>
+void each_block(int threads, std::size_t count, const Work& work) {
+  for_each_task(threads, static_cast<int>(blocks_of(count)), [&](int task) {
+    const auto block = static_cast<std::size_t>(task);
+    work(block, block * spheres_at_once, std::min(count, (block + 1) * spheres_at_once));
+  });
+}
+
 template <class T>
-void reorder(std::vector<T>& items, const std::vector<Index>& order) {
+void reorder(std::vector<T>& items, std::span<const Index> order) {
   std::vector<T> sorted;
   sorted.reserve(items.size());
   for (const Index i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
@@ -50,13 +70,14 @@ void reorder(std::vector<T>& items, const std::vector<Index>& order) {
 }  // namespace
 
 SoftSpheres::SoftSpheres(const PackingTask& task, std::vector<Vec3> position,
-                         std::vector<double> radius)
+                         std::vector<double> radius, int threads)
     : task_(task),
       position_(std::move(position)),
       velocity_(position_.size()),
       force_(position_.size()),
       radius_(std::move(radius)),
       margin_(0.4 * mean(radius_)),
+      threads_(threads),
       dt_(first_step),
       mixing_(first_mixing) {
   const Vec3 half = task.container.half();
@@ -64,11 +85,15 @@ SoftSpheres::SoftSpheres(const PackingTask& task, std::vector<Vec3> position,
   for (std::size_t k = 0; k < 3; ++k) period_[k] = task.periodic[k] ? edges[k] : 0.0;
 }
 
-double SoftSpheres::push() {
+double SoftSpheres::push(bool with_energy) {
   if (!neighbours_hold()) find_neighbours();
   energy_ = worst_ = 0.0;
-  for (Vec3& f : force_) f = {};
-  push_pairs();
+  if (threads_ >= fewest_threads) {
+    push_pairs_by_threads(with_energy);
+  } else {
+    for (Vec3& f : force_) f = {};
+    push_pairs();
+  }
   push_walls();
   push_obstacles();
   return worst_;
@@ -111,7 +136,7 @@ void SoftSpheres::find_neighbours() {
   if (periodic) wrap();
   const CellGrid grid(position_, 2.0 * mean(radius_) + margin_);
   // Memory follows space; from here on sphere i is the i-th of the grid's order.
-  const std::vector<Index> order = grid.order();
+  const std::span<const Index> order = grid.order();
   std::vector<Index> rank(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     rank[static_cast<std::size_t>(order[k])] = static_cast<Index>(k);
@@ -120,9 +145,7 @@ void SoftSpheres::find_neighbours() {
   reorder(radius_, order);
 
   const std::size_t count = position_.size();
-  first_.assign(count + 1, 0);
-  neighbour_.clear();
-  for (std::size_t i = 0; i < count; ++i) {
+  const auto find = [&](std::size_t i, std::vector<Index>& found) {
     const Vec3 here = position_[i];
     const double mine = radius_[i];
     // Each pair is found from its larger sphere.
@@ -133,13 +156,29 @@ void SoftSpheres::find_neighbours() {
         if (other > mine || (other == mine && j >= static_cast<Index>(i))) return;
         const Vec3 apart = position_[static_cast<std::size_t>(j)] - from;
         const double reach = mine + other + margin_;
-        if (dot(apart, apart) < reach * reach) neighbour_.push_back(j);
+        if (dot(apart, apart) < reach * reach) found.push_back(j);
       });
     };
     look(here);
     if (periodic) each_image(here, period_, 2.0 * mine + margin_, look);
-    first_[i + 1] = static_cast<Index>(neighbour_.size());
+  };
+  first_.assign(count + 1, 0);
+  std::vector<std::vector<Index>> found(blocks_of(count));
+  each_block(threads_, count, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      find(i, found[block]);
+      first_[i + 1] = static_cast<Index>(found[block].size());
+    }
+  });
+  neighbour_.clear();
+  for (std::size_t block = 0; block < found.size(); ++block) {
+    const auto before = static_cast<Index>(neighbour_.size());
+    for (std::size_t i = block * spheres_at_once;
+         i < std::min(count, (block + 1) * spheres_at_once); ++i)
+      first_[i + 1] += before;
+    neighbour_.insert(neighbour_.end(), found[block].begin(), found[block].end());
   }
+  if (threads_ >= fewest_threads) list_visitors();
 
   near_obstacle_.clear();
   for (std::size_t i = 0; i < count; ++i) {
@@ -179,6 +218,85 @@ void SoftSpheres::push_pairs() {
   }
   energy_ += energy;
   worst_ = std::max(worst_, worst);
+}
+
+/// The pairs that lead to each sphere, ascending.
+void SoftSpheres::list_visitors() {
+  first_visitor_.assign(position_.size() + 1, 0);
+  for (const Index j : neighbour_) ++first_visitor_[static_cast<std::size_t>(j) + 1];
+  std::partial_sum(first_visitor_.begin(), first_visitor_.end(), first_visitor_.begin());
+  std::vector<Index> next = first_visitor_;
+  visitor_.resize(neighbour_.size());
+  for (std::size_t pair = 0; pair < neighbour_.size(); ++pair) {
+    Index& place = next[static_cast<std::size_t>(neighbour_[pair])];
+    visitor_[static_cast<std::size_t>(place++)] = static_cast<Index>(pair);
+  }
+  push_.resize(neighbour_.size());
+  overlap_.resize(neighbour_.size());
+}
+
+/// What a pair of sphere i does.
+void SoftSpheres::meet(std::size_t i, Index pair) {
+  const auto p = static_cast<std::size_t>(pair), j = static_cast<std::size_t>(neighbour_[p]);
+  Vec3 apart = position_[j] - position_[i];
+  if (task_.is_periodic()) apart = nearest_image(apart);
+  const double squared = dot(apart, apart);
+  const double touching = radius_[i] + radius_[j];
+  overlap_[p] = -1.0;
+  if (squared >= touching * touching) return;
+  const double distance = std::sqrt(squared);
+  const double overlap = touching - distance;
+  overlap_[p] = overlap;
+  push_[p] = distance > 0.0 ? (overlap / distance) * apart : Vec3{overlap, 0.0, 0.0};
+}
+
+/// Of all pairs of a sphere, in the order in which push_pairs() adds them.
+Vec3 SoftSpheres::sum_of(std::size_t i) const {
+  Vec3 total{};
+  const auto pushed = [&](std::size_t p) { return overlap_[p] >= 0.0; };
+  auto visit = static_cast<std::size_t>(first_visitor_[i]);
+  const auto end = static_cast<std::size_t>(first_visitor_[i + 1]);
+  for (; visit < end && visitor_[visit] < first_[i]; ++visit)
+    if (const auto p = static_cast<std::size_t>(visitor_[visit]); pushed(p)) total += push_[p];
+  for (auto p = static_cast<std::size_t>(first_[i]); p < static_cast<std::size_t>(first_[i + 1]);
+       ++p)
+    if (pushed(p)) total -= push_[p];
+  for (; visit < end; ++visit)
+    if (const auto p = static_cast<std::size_t>(visitor_[visit]); pushed(p)) total += push_[p];
+  return total;
+}
+
+/// The largest overlap over the radius of the neighbour, of pairs one after the other.
+double SoftSpheres::worst_of(std::size_t begin, std::size_t end, double worst) const {
+  for (auto p = static_cast<std::size_t>(first_[begin]); p < static_cast<std::size_t>(first_[end]);
+       ++p) {
+    const double radius = radius_[static_cast<std::size_t>(neighbour_[p])];
+    if (overlap_[p] > worst * radius) worst = overlap_[p] / radius;
+  }
+  return worst;
+}
+
+void SoftSpheres::push_pairs_by_threads(bool with_energy) {
+  const std::size_t count = position_.size();
+  std::vector<double> worst(blocks_of(count), 0.0);
+  each_block(threads_, count, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (Index p = first_[i]; p < first_[i + 1]; ++p) meet(i, p);
+    worst[block] = worst_of(begin, end, 0.0);
+  });
+  each_block(threads_, count, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) force_[i] = sum_of(i);
+  });
+  // Rounding lets the order of pairs decide among those that are as bad as the worst to all digits
+  // but the last: blocks that have such pairs are looked at once more, in order.
+  const double near = (1.0 - 1e-12) * *std::max_element(worst.begin(), worst.end());
+  for (std::size_t block = 0; block < worst.size(); ++block)
+    if (worst[block] >= near)
+      worst_ =
+          worst_of(block * spheres_at_once, std::min(count, (block + 1) * spheres_at_once), worst_);
+  if (!with_energy) return;
+  for (const double overlap : overlap_)
+    if (overlap >= 0.0) energy_ += 0.5 * overlap * overlap;
 }
 
 void SoftSpheres::push_walls() {

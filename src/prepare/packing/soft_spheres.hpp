@@ -11,12 +11,15 @@ namespace breccia::prepare {
 /// container or an obstacle with two. Units of time follow: a period of a pair is about 4.
 class SoftSpheres {
  public:
-  SoftSpheres(const PackingTask& task, std::vector<Vec3> position, std::vector<double> radius);
+  /// @param threads  any number of them gives the same bits
+  SoftSpheres(const PackingTask& task, std::vector<Vec3> position, std::vector<double> radius,
+              int threads = 1);
 
-  /// Forces at the present positions. Returns the largest overlap over the smaller radius; walls
-  /// and obstacles count as mirrors, so that their overlap is twice the depth  [-]
-  double push();
-  /// Elastic energy at the last push  [m2]
+  /// Forces at the present positions, and the energy if it is asked for. Returns the largest
+  /// overlap over the smaller radius; walls and obstacles count as mirrors, so that their overlap
+  /// is twice the depth  [-]
+  double push(bool with_energy = true);
+  /// Elastic energy at the last push that was asked for it  [m2]
   double energy() const { return energy_; }
   /// One step of FIRE under the forces of the last push.
   void move();
@@ -31,7 +34,12 @@ class SoftSpheres {
   bool neighbours_hold() const;
   Vec3 nearest_image(const Vec3& apart) const;
   void find_neighbours();
+  void list_visitors();
   void push_pairs();
+  void push_pairs_by_threads(bool with_energy);
+  void meet(std::size_t i, Index pair);
+  Vec3 sum_of(std::size_t i) const;
+  double worst_of(std::size_t begin, std::size_t end, double worst) const;
   void push_walls();
   void push_obstacles();
 
@@ -42,6 +50,11 @@ class SoftSpheres {
   double margin_;               ///< pairs closer than this are neighbours  [m]
   std::vector<Vec3> searched_;  ///< where the spheres were when neighbours were found  [m]
   std::vector<Index> first_, neighbour_;  ///< of each sphere, each pair once
+  int threads_;
+  // By threads: what pairs do, and then the pairs that have a sphere as neighbour, ascending.
+  std::vector<Vec3> push_;       ///< on the neighbour, of each pair  [m]
+  std::vector<double> overlap_;  ///< of each pair; below 0: apart  [m]
+  std::vector<Index> first_visitor_, visitor_;
   struct NearObstacle {
     Index sphere, obstacle;
   };

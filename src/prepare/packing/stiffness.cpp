@@ -206,14 +206,14 @@ bool has_section(const BodyConfig& body) {
 
 }  // namespace
 
-Elasticity measured_elasticity(const Model& model, const Config& config, int number) {
+Elasticity measured_elasticity(const Model& model, const Config& config, int number, int threads) {
   const BodyConfig& body = config.bodies[static_cast<std::size_t>(number)];
   const bool round = body.shape == "cylinder";
   const Vec3 size = round ? Vec3{2.0 * body.radius, 2.0 * body.radius, body.length} : body.size;
   const int axis = round ? 2 : size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const double length = component(size, axis);
   const double section = round ? pi * body.radius * body.radius : size.x * size.y * size.z / length;
-  const ElasticNetwork network(model, config, members_of(model, number));
+  const ElasticNetwork network(model, config, members_of(model, number), threads);
   const auto& members = network.members();
   const auto along = static_cast<std::size_t>(axis);
   const auto place = [&](std::size_t k) {
@@ -276,7 +276,7 @@ void even_out(Model& model, int number, const Vec3& center, const std::string& f
   if (fabric == "faces") links.weaken_faces();
 }
 
-void set_stiffness(Model& model, const Config& config) {
+void set_stiffness(Model& model, const Config& config, int threads) {
   model.bulk.resize(config.bodies.size());
   for (std::size_t k = 0; k < config.bodies.size(); ++k) {
     const BodyConfig& body = config.bodies[k];
@@ -289,7 +289,7 @@ void set_stiffness(Model& model, const Config& config) {
         corrected || (has_section(body) && members_of(model, number).size() <= always_measured);
     const auto elasticity = [&] {
       return !wanted             ? Elasticity{}
-             : has_section(body) ? measured_elasticity(model, config, number)
+             : has_section(body) ? measured_elasticity(model, config, number, threads)
                                  : estimated_elasticity(model, config, number);
     };
     const Elasticity packed = elasticity();

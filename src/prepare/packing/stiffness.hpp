@@ -19,7 +19,8 @@ struct Elasticity {
 /// Elasticity of a box or cylinder whose ends are pulled apart (docs/theory.md, fabric): the
 /// longest edge of a box, the axis of a cylinder; sides are free, moments act, links are intact. E
 /// is the force at the ends over section and strain of the middle half. No bars.
-Elasticity measured_elasticity(const dem::Model& model, const dem::Config& config, int body);
+Elasticity measured_elasticity(const dem::Model& model, const dem::Config& config, int body,
+                               int threads = 1);
 
 /// Of any body, to 7 %: that of links that all follow one strain (Voigt), times a constant.
 Elasticity estimated_elasticity(const dem::Model& model, const dem::Config& config, int body);
@@ -28,7 +29,7 @@ Elasticity estimated_elasticity(const dem::Model& model, const dem::Config& conf
 /// always, others where their material has stiffness = "measured"; it then sets the factors on the
 /// stiffness of their links, too. Sets the sections and strengths of links (Model::Link::share,
 /// ::strength) of bodies whose material has fabric = "even" or "faces".
-void set_stiffness(dem::Model& model, const dem::Config& config);
+void set_stiffness(dem::Model& model, const dem::Config& config, int threads = 1);
 
 /// From a point, relative to a body's centre, to its nearest faces, in directions across each
 /// other; any length above `reach` where there is none nearer: depths(point, reach)  [m]

@@ -85,7 +85,7 @@ void keep_only(Model& model, const std::vector<bool>& kept) {
     if (kept[e]) number[e] = next++;
   const auto gone = [&](Index e) { return e >= 0 && !kept[static_cast<std::size_t>(e)]; };
   std::vector<Index> facet(model.facets.size(), -1);
-  std::vector<Model::Facet> facets;
+  PlainVector<Model::Facet> facets;
   for (std::size_t f = 0; f < facet.size(); ++f) {
     const Model::Facet& one = model.facets[f];
     if (gone(one.a) || gone(one.b) || gone(one.c) || gone(one.d)) continue;

@@ -200,10 +200,10 @@ dem::Model specimen_of(const dem::Config& config) {
     model.groups.push_back(body.name);
   }
   const std::size_t count = model.groups.size();
-  model.material.resize(count);
-  model.radius = model.mass = model.inertia = std::vector<double>(count, 1.0);
-  model.velocity = model.spin = std::vector<Vec3>(count);
-  model.bar_previous = model.bar_next = std::vector<Index>(count, -1);
+  model.material.assign(count, 0);
+  model.radius = model.mass = model.inertia = PlainVector<double>(count, 1.0);
+  model.velocity = model.spin = PlainVector<Vec3>(count, Vec3{});
+  model.bar_previous = model.bar_next = PlainVector<Index>(count, -1);
   return model;
 }
 /// One tetrahedron a body.
