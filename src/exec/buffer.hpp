@@ -98,6 +98,11 @@ class Buffer {
   }
   void reserve(Index capacity) { grow(capacity); }
   void clear() { size_ = 0; }
+  /// Items beyond the end are what a kernel has written there, in memory that reserve() has got.
+  void extend_to(Index size) {
+    BR_ASSERT(size >= size_ && size <= capacity_);
+    size_ = size;
+  }
 
   View<T> view() { return make<T>(data_); }
   View<const T> view() const { return make<const T>(data_); }

@@ -27,13 +27,15 @@ const double* exchange(double own);
 
 /// The neighbouring lanes of a warp that work on one item, `width` of them. All of them call each
 /// function, in the same order.
-template <int width>
+/// @tparam together  lanes that call each function at a time: if all 32 of a warp do, nvcc need not
+///                   find out which do
+template <int width, int together = width>
 class LaneGroup {
  public:
   BR_HD LaneGroup() {
 #if defined(__CUDA_ARCH__)
     first_ = threadIdx.x / width * width % 32;
-    mask_ = (width == 32 ? ~0U : (1U << width % 32) - 1) << first_;
+    mask_ = (together == 32 ? ~0U : ((1U << width % 32) - 1) << first_);
 #endif
   }
   /// x of lane `of`.

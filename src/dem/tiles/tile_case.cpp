@@ -28,14 +28,8 @@ View<T> with_room(Buffer<T>& items, Index room) {
 /// Gives an array the items that kernels have written there, beyond its own, too.
 template <class T>
 void take_items(Buffer<T>& items, Index count) {
-  const Index own = items.size();
-  if (count <= own) return items.resize(count);
-  const std::size_t bytes = at(count - own) * sizeof(T);
-  Buffer<T> more(items.space());
-  more.reserve(count - own);
-  copy_bytes(more.data(), items.space(), items.data() + own, items.space(), bytes);
-  items.resize(count);  // which clears them
-  copy_bytes(items.data() + own, items.space(), more.data(), items.space(), bytes);
+  if (count <= items.size()) return items.resize(count);
+  items.extend_to(count);
 }
 /// Contacts of elements that are their ends a, or b.
 ContactForces contacts_of(World& w, Index room, Buffer<ContactState>& state, Buffer<double>& slid,
@@ -74,7 +68,7 @@ TileSearchCase search_case(World& w, TilePlan& plan, Index room, std::size_t byt
           with_room(pairs.b, room),
           w.contact_incidence.starts.view(),
           with_room(w.contact_incidence.entries, 2 * room),
-          with_room(s.spheres, elements),
+          with_room(s.spheres, 5 * elements),
           with_room(s.motion, 4 * tiles),
           with_room(s.counts, elements),
           with_room(s.first_pair, elements),
@@ -123,12 +117,7 @@ std::unique_ptr<TilePlan> tiles_for(const World& w) {
   const char* reason = unknown_to_tiles(w);
   if (reason == nullptr && at(w.links()) * link_bytes >= at(most) * memory)
     reason = "more links than the memory of its multiprocessors holds";
-  // So far measured with one law; a material whose skin is filled by `fabric` has one a class of
-  // links.
-  constexpr std::size_t laws_measured = 16;
-  if (w.exec.tiles < 0 &&
-      (w.links() < links_that_pay * most || w.concrete.groups.size() > laws_measured))
-    return nullptr;
+  if (w.exec.tiles < 0 && w.links() < links_that_pay * most) return nullptr;
   std::unique_ptr<TilePlan> plan;
   if (reason == nullptr) {
     plan = share_out_to_tiles(w, std::clamp(w.elements.size() / least_elements, Index{1}, most));

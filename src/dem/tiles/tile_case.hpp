@@ -8,6 +8,14 @@
 #include "dem/tiles/tile_plan.hpp"
 #include "dem/world.hpp"
 
+/// nvcc unrolls the loop that follows so many times: what it reads is on its way at one time.
+#if defined(__CUDA_ARCH__)
+#define BR_PRAGMA(text) _Pragma(#text)
+#define BR_UNROLL_BY(times) BR_PRAGMA(unroll times)
+#else
+#define BR_UNROLL_BY(times)
+#endif
+
 namespace breccia::dem {
 
 /// Writes a number for other tiles.
@@ -53,7 +61,7 @@ struct TileSearchCase {
   View<Index> incidence_starts;
   View<Entry> incidence;
   // Of TileSearches.
-  View<NearSphere> spheres;
+  View<double> spheres;  ///< five numbers of each element, one array each
   View<double> motion;
   View<ContactCounts> counts;
   View<Index> first_pair;
@@ -66,6 +74,20 @@ struct TileSearchCase {
   View<TileContact> found;
   std::size_t bytes;  ///< of a tile's memory
   Index most_acting;  ///< give_actions()
+
+  BR_HD NearSphere sphere(Index e) const {
+    const Index n = spheres.size / 5;
+    return {
+        {spheres[e], spheres[n + e], spheres[2 * n + e]}, spheres[3 * n + e], spheres[4 * n + e]};
+  }
+  BR_HD void show(Index e, const NearSphere& sphere) const {
+    const Index n = spheres.size / 5;
+    spheres[e] = sphere.position.x;
+    spheres[n + e] = sphere.position.y;
+    spheres[2 * n + e] = sphere.position.z;
+    spheres[3 * n + e] = sphere.radius;
+    spheres[4 * n + e] = sphere.margin;
+  }
 };
 
 /// A world as its tiles see it.

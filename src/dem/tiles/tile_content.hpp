@@ -119,27 +119,38 @@ struct TileContent {
                       : e < tile.own + tile.linked
                           ? t.linked[tile.first_linked + e - tile.own]
                           : lists.touched[tile.first_touched + e - tile.own - tile.linked];
-      memory.place[e] = g;
-      memory.state[e] = read_record(all.move.kick.state, g);
-      memory.mass[e] = all.move.kick.mass[g];
-      memory.inertia[e] = all.move.kick.inertia[g];
-      memory.material[e] = all.contacts.material[g];
-      memory.motion[e] = all.move.kick.motion[g];
-      memory.fixed[e] = all.move.kick.fixed[g];
+      // All is read before the first is written, so that it is on its way at one time.
+      const ElementState state = read_record(all.move.kick.state, g);
+      const double mass = all.move.kick.mass[g], inertia = all.move.kick.inertia[g];
+      const std::int16_t material = all.contacts.material[g], motion = all.move.kick.motion[g];
+      const std::uint8_t fixed = all.move.kick.fixed[g];
       const ElementLoad load{all.move.kick.force[g], all.move.kick.torque[g]};
-      if (e >= tile.own) {
+      const bool own = e < tile.own;
+      const Quaternion orientation = own ? all.move.orientation[g] : Quaternion{};
+      const Vec3 reference = own ? all.move.used.reference[g] : Vec3{};
+      const double margin = own ? all.move.used.margin[g] : 0.0,
+                   damping_work = own ? all.move.damping_work[g] : 0.0,
+                   load_work = own ? all.move.load_work[g] : 0.0;
+      memory.place[e] = g;
+      memory.state[e] = state;
+      memory.mass[e] = mass;
+      memory.inertia[e] = inertia;
+      memory.material[e] = material;
+      memory.motion[e] = motion;
+      memory.fixed[e] = fixed;
+      if (!own) {
         memory.received[e - tile.own] = load;
         continue;
       }
       memory.load[e] = load;
-      memory.orientation[e] = all.move.orientation[g];
-      memory.reference[e] = all.move.used.reference[g];
-      memory.margin[e] = all.move.used.margin[g];
-      memory.damping_work[e] = all.move.damping_work[g];
-      memory.load_work[e] = all.move.load_work[g];
-      memory.over_mass[e] = 1.0F / static_cast<float>(memory.mass[e]);
-      const auto margin = static_cast<float>(memory.margin[e]);
-      memory.room[e] = margin * margin / 1.0001F;
+      memory.orientation[e] = orientation;
+      memory.reference[e] = reference;
+      memory.margin[e] = margin;
+      memory.damping_work[e] = damping_work;
+      memory.load_work[e] = load_work;
+      memory.over_mass[e] = 1.0F / static_cast<float>(mass);
+      const auto rough = static_cast<float>(margin);
+      memory.room[e] = rough * rough / 1.0001F;
     }
   }
   BR_HD void bring_links(Index thread, Index threads) const {
@@ -147,35 +158,65 @@ struct TileContent {
     for (Index l = thread; l < tile.concrete; l += threads) {
       const TileLink link = t.links[tile.first_link + l];
       const auto g = static_cast<Index>(link.number);
-      memory.concrete[l] = link;
-      memory.length[l] = all.concrete.length[g];
       using Constant = typename TileMemory<Number>::Constant;
-      memory.stiffness[l] = static_cast<Constant>(all.concrete.stiffness[g]);
-      memory.area[l] = static_cast<Constant>(all.concrete.area[g]);
-      memory.opening[l] = all.concrete.opening[g];
-      shear().store(l, all.concrete.shear[g]);
-      moment().store(l, all.concrete.moment[g]);
+      const double length = all.concrete.length[g];
+      const auto stiffness = static_cast<Constant>(all.concrete.stiffness[g]),
+                 area = static_cast<Constant>(all.concrete.area[g]);
+      const Stores opening = all.concrete.opening[g];
+      const auto shear_force = all.concrete.shear[g], bending = all.concrete.moment[g];
+      memory.concrete[l] = link;
+      memory.length[l] = length;
+      memory.stiffness[l] = stiffness;
+      memory.area[l] = area;
+      memory.opening[l] = opening;
+      shear().store(l, shear_force);
+      moment().store(l, bending);
     }
     for (Index l = thread; l < tile.steel; l += threads) {
       const TileLink link = t.links[tile.first_link + tile.concrete + l];
+      const double length = all.steel.length[static_cast<Index>(link.number)];
+      const SteelState state = all.steel.state[static_cast<Index>(link.number)];
       memory.steel[l] = link;
-      memory.bar_length[l] = all.steel.length[static_cast<Index>(link.number)];
-      memory.bar_state[l] = all.steel.state[static_cast<Index>(link.number)];
+      memory.bar_length[l] = length;
+      memory.bar_state[l] = state;
     }
     for (Index l = thread; l < tile.interface; l += threads) {
       const TileLink link = t.links[tile.first_link + tile.concrete + tile.steel + l];
       const auto g = static_cast<Index>(link.number);
+      const TileAxis axis = t.axes[tile.first_axis + l];
+      const double stiffness = all.interface.stiffness[g], area = all.interface.area[g];
+      const InterfaceState state = all.interface.state[g];
       memory.interface[l] = link;
-      memory.axis[l] = t.axes[tile.first_axis + l];
-      memory.bond_stiffness[l] = all.interface.stiffness[g];
-      memory.bond_area[l] = all.interface.area[g];
-      memory.bond_state[l] = all.interface.state[g];
+      memory.axis[l] = axis;
+      memory.bond_stiffness[l] = stiffness;
+      memory.bond_area[l] = area;
+      memory.bond_state[l] = state;
     }
+  }
+  /// Items word by word, neighbouring threads neighbouring words.
+  template <class T>
+  BR_HD static void bring(T* to, const View<const T>& from, Index count, Index thread,
+                          Index threads) {
+    using Word = std::uint32_t;
+    static_assert(sizeof(T) % sizeof(Word) == 0 && alignof(T) >= alignof(Word));
+    const Index words = count * static_cast<Index>(sizeof(T) / sizeof(Word));
+    for (Index k = thread; k < words; k += threads)
+      reinterpret_cast<Word*>(to)[k] = reinterpret_cast<const Word*>(from.data)[k];
   }
   BR_HD void bring_lists(const TileLists& lists, Index thread, Index threads) const {
     const TilesView& t = all.tiles;
-    const Index numbers = TileMemory<Number>::row_numbers(tile);
-    for (Index k = thread; k < numbers; k += threads) memory.rows[k] = t.rows[tile.first_row + k];
+    const Index numbers = tile.row_numbers();
+    if (thread == 0) memory.bar_actions[tile.bars()] = PairForce{};
+    constexpr Index ahead = 4;  // are on their way at one time
+    for (Index k = thread; k < numbers; k += ahead * threads) {
+      TilePlace next[ahead];
+      BR_UNROLL
+      for (Index j = 0; j < ahead; ++j)
+        next[j] = t.rows[tile.first_row + (k + j * threads < numbers ? k + j * threads : k)];
+      BR_UNROLL
+      for (Index j = 0; j < ahead; ++j)
+        if (k + j * threads < numbers) memory.rows[k + j * threads] = next[j];
+    }
     for (Index k = thread; k <= tile.own; k += threads)
       memory.starts[k] = lists.starts[tile.first_start + k];
     for (Index k = thread; k < tile.contacts; k += threads) {
@@ -186,12 +227,9 @@ struct TileContent {
       memory.touching[k] = state.overlap > 0.0 ? 1 : 0;
       memory.acts[k] = 0;
     }
-    for (Index k = thread; k < t.groups.concrete; k += threads)
-      memory.concrete_laws[k] = all.concrete_laws[k];
-    for (Index k = thread; k < t.groups.steel; k += threads)
-      memory.steel_laws[k] = all.steel_laws[k];
-    for (Index k = thread; k < t.groups.interface; k += threads)
-      memory.interface_laws[k] = all.interface_laws[k];
+    bring(memory.concrete_laws.data(), all.concrete_laws, t.groups.concrete, thread, threads);
+    bring(memory.steel_laws.data(), all.steel_laws, t.groups.steel, thread, threads);
+    bring(memory.interface_laws.data(), all.interface_laws, t.groups.interface, thread, threads);
   }
 };
 

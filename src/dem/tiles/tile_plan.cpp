@@ -191,7 +191,7 @@ class Filler {
     for (const Index i : order[2])
       filled.axes.push_back({place(bonds.before[at(i)]), place(bonds.after[at(i)])});
     list_rows(own, order, filled);
-    return true;
+    return at(tile.row_entries) < 2 * most;
   }
 
  private:
@@ -239,8 +239,9 @@ class Filler {
     std::vector<std::vector<TilePlace>>& row = row_of_;
     row.resize(std::max(row.size(), 2 * at(own)));
     for (auto& one : row) one.clear();
+    const auto zeros = static_cast<TilePlace>(bars);
     for (Index l = 0; l < tile.concrete; ++l) {
-      const auto action = static_cast<TilePlace>(bars + l);
+      const auto action = static_cast<TilePlace>(bars + 1 + l);
       const TileLink& link = links[at(l)];
       if (link.a < own) row[2U * link.a].push_back(action);
       if (link.b < own) row[2U * link.b + 1].push_back(action);
@@ -275,8 +276,11 @@ class Filler {
     for (Index k = 0; k < 2 * own; ++k) {
       rows.push_back(static_cast<TilePlace>(entries.size()));
       entries.insert(entries.end(), row[at(k)].begin(), row[at(k)].end());
+      const std::size_t longest = length(static_cast<TilePlace>(k / 2));
+      entries.resize(rows.back() + (longest + 1) / 2 * 2, zeros);
     }
     rows.push_back(static_cast<TilePlace>(entries.size()));
+    rows.resize(at(tile.first_entry()));
     rows.insert(rows.end(), entries.begin(), entries.end());
     tile.row_entries = static_cast<Index>(entries.size());
   }

@@ -52,6 +52,9 @@ struct Tile {
   BR_HD Index elements() const { return own + linked + touched; }
   BR_HD Index bars() const { return steel + interface; }
   BR_HD Index links() const { return concrete + bars(); }
+  /// Where entries begin among the numbers of `rows`: at an even place.
+  BR_HD Index first_entry() const { return (3 * own + 2) / 2 * 2; }
+  BR_HD Index row_numbers() const { return first_entry() + row_entries; }
 };
 
 /// Groups of links by kind: each has a law.
@@ -123,9 +126,10 @@ struct TileMemory {
   Placed<PairForceOf<Stores>> actions;  ///< of concrete links, behind those of bars
   Placed<ElementLoad> received;   ///< of others' elements; in the memory of `actions`, when these
                                   ///< are summed
-  Placed<PairForce> bar_actions;  ///< of steel links, then bonds
+  Placed<PairForce> bar_actions;  ///< of steel links, then bonds, then zeros
   Placed<TilePlace> rows;  ///< own elements by the length of their rows; first action of each as a,
-                           ///< as b, and the end; then actions from `bar_actions` on
+                           ///< as b, and the end; then actions from `bar_actions` on, as many as a
+                           ///< as as b, filled up by zeros to an even number
   Placed<TilePlace> starts;  ///< first contact of each own element, and the end
   Placed<TileContact> contacts;
   Placed<std::uint8_t>
@@ -133,15 +137,13 @@ struct TileMemory {
   Placed<TilePlace> acts;  ///< number from 1 of a contact's action in this step, the first ones in
                            ///< `contact_actions`; 0: none
   Placed<PairForce> contact_actions;
-  Placed<float> stiffness_sums;  ///< of own elements: 13 numbers, one array each
-  Placed<Index> counters;        ///< next portion of links, next action of a contact
+  Placed<Index> counters;  ///< next portion of links, next action of a contact
 
   Placed<Law> concrete_laws;
   Placed<SteelLink> steel_laws;
   Placed<InterfaceLink> interface_laws;
   Placed<StepClock> clocks;  ///< two, in turns
 
-  BR_HD static Index row_numbers(const Tile& tile) { return 3 * tile.own + 1 + tile.row_entries; }
   /// @returns the bytes that it takes, from this object on
   BR_HD std::size_t lay_out(const Tile& of, const TileGroups& groups);
 };
@@ -215,14 +217,13 @@ BR_HD std::size_t TileMemory<Number>::lay_out(const Tile& of, const TileGroups& 
   pieces.take(bond_stiffness, bonds);
   pieces.take(bond_area, bonds);
   pieces.take(bond_state, bonds);
-  pieces.take(rows, row_numbers(tile));
+  pieces.take(rows, tile.row_numbers());
   pieces.take(starts, own + 1);
   pieces.take(contacts, tile.contacts);
   pieces.take(touching, tile.contacts);
   pieces.take(acts, tile.contacts);
   pieces.take(contact_actions, tile.acting);
-  pieces.take(stiffness_sums, 13 * own);
-  pieces.take(bar_actions, tile.bars());
+  pieces.take(bar_actions, tile.bars() + 1);
   detail::Pieces also = pieces;
   also.take(received, all - own);
   pieces.take(actions, tile.concrete);
@@ -327,7 +328,7 @@ struct TileNews {
 
 /// Searches by the tiles themselves: what they find, and what they tell each other meanwhile.
 struct TileSearches {
-  Buffer<NearSphere> spheres;    ///< of each element
+  Buffer<double> spheres;        ///< of each element five numbers
   Buffer<double> motion;         ///< of each tile: sums of velocities and of their squares
   Buffer<ContactCounts> counts;  ///< of each element
   Buffer<Index> first_pair;      ///< of each element as the lower one

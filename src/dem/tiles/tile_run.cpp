@@ -49,6 +49,7 @@ __device__ TileReport report_of_warp(TileReport own) {
   own.near = __any_sync(~0U, own.near ? 1 : 0) != 0;
   return own;
 }
+/// Likewise of several warps.
 template <int warps>
 __device__ TileReport news_of(const TileReport* of_warp) {
   TileReport report = of_warp[0];
@@ -57,6 +58,11 @@ __device__ TileReport news_of(const TileReport* of_warp) {
     report.near = report.near || of_warp[warp].near;
   }
   return report;
+}
+/// Tells what a thread has found in a step, for the report of its tile.
+__device__ void tell(TileReport report, TileReport* told, Index thread) {
+  report = report_of_warp(report);
+  if (thread % 32 == 0) told[thread / 32] = report;
 }
 
 /// Loads of others' elements, by `threads` threads: several words are asked for before the first
@@ -170,8 +176,8 @@ __global__ void __launch_bounds__(threads, 1)
     launch_tiles(const __grid_constant__ TileCase<Number> all) {
   constexpr Index first_number = threads / TileStep<Number>::portion;
   extern __shared__ __align__(16) std::byte memory[];
-  constexpr int judges = 160, warps = judges / 32;  // the others receive loads meanwhile
-  __shared__ TileReport told[warps], heard[warps];
+  constexpr int hearers = 160;  // the others receive loads meanwhile
+  __shared__ TileReport told[threads / 32], heard[hearers / 32];
   const auto thread = static_cast<Index>(threadIdx.x), number = static_cast<Index>(blockIdx.x);
   std::uint32_t tag = all.tag;
   int current = 0;
@@ -193,28 +199,22 @@ __global__ void __launch_bounds__(threads, 1)
       if (!moved) {
         // Tiles tell each other what they have found, and hear of all.
         ++tag;
-        if (thread < judges) {
+        if (first) {
           TileReport report;
-          if (first) {
-            report.near = tile.near_at_entry(thread, judges);
-          } else {
-            const double dt = tile.memory.clocks[current].now.next_dt;
-            for (Index e = thread; e < tile.tile.own; e += judges)
-              tile.judge(e, span_after(dt), longest_after(dt), report);
-          }
-          report = report_of_warp(report);
-          if (thread % 32 == 0) told[thread / 32] = report;
+          report.near = tile.near_at_entry(thread, threads);
+          tell(report, told, thread);
+          __syncthreads();
         }
-        __syncthreads();  // of all: racecheck does not follow barriers of some of the threads
-        if (thread < judges) {
-          const TileReport report = exchange<judges>(tile, news_of<warps>(told), tag, thread);
+        if (thread < hearers) {
+          const TileReport report =
+              exchange<hearers>(tile, news_of<threads / 32>(told), tag, thread);
           if (thread % 32 == 0) heard[thread / 32] = report;
         } else if (!first) {
-          receive<threads - judges>(tile, tag, thread - judges);
+          receive<threads - hearers>(tile, tag, thread - hearers);
         }
         first = false;
         __syncthreads();
-        const TileReport news = news_of<warps>(heard);
+        const TileReport news = news_of<hearers / 32>(heard);
         StepClock clock = tile.memory.clocks[current];
         if (end_step(all.end, news, clock)) {
           tile.leave(thread, threads);
@@ -223,23 +223,25 @@ __global__ void __launch_bounds__(threads, 1)
           goes_on = false;
           break;
         }
-        tile.move(clock.now, thread, threads);
-        clock.open = step_open;
-        current = 1 - current;
-        if (thread == 0) {
-          tile.memory.clocks[current] = clock;
+        if (thread == threads - 1) {  // it has fewest elements to move
+          clock.open = step_open;
+          tile.memory.clocks[1 - current] = clock;
           tile.count_from(first_number);
         }
+        current = 1 - current;
+        tile.move(clock.now, thread, threads);
         __syncthreads();
-        if (news.near && meet(all, number, ++tag, tile.used_margin(clock.now, thread, threads))) {
-          const SearchEnd end = search(&all, number, memory, tag, clock.now.next_dt, searches);
+        const StepClock& moves = tile.memory.clocks[current];
+        if (news.near && meet(all, number, ++tag, tile.used_margin(moves.now, thread, threads))) {
+          const StepClock kept = moves;  // a search takes its memory
+          const SearchEnd end = search(&all, number, memory, tag, kept.now.next_dt, searches);
           tag = end.tag;
           if (end.found) {
             ++searches;
           } else {
             if (number == 0 && thread == 0) {
-              clock.host_request = 1;
-              all.news->clock = clock;
+              all.news->clock = kept;
+              all.news->clock.host_request = 1;
             }
             goes_on = false;
           }
@@ -252,7 +254,11 @@ __global__ void __launch_bounds__(threads, 1)
       moved = false;
       pair_forces<threads, parts>(tile, after_move(tile.memory.clocks[current].now), thread);
       __syncthreads();
-      for (Index i = thread; i < tile.sum_items(); i += threads) tile.sum(i, tag + 1);
+      const double dt = tile.memory.clocks[current].now.next_dt;
+      TileReport report;
+      for (Index i = thread; i < tile.sum_items(); i += threads)
+        tile.sum(i, tag + 1, span_after(dt), longest_after(dt), report);
+      tell(report, told, thread);
       __syncthreads();
     }
   }
@@ -358,22 +364,22 @@ class TilesInTurn {
   struct Sums {
     const Step* tile;
     std::uint32_t tag;
+    double dt;
     Index element;
+    TileReport report;
   };
   static TileReport sums(const Step& tile, std::uint32_t tag, double dt) {
-    Sums sums{&tile, tag, 0};
+    Sums sums{&tile, tag, dt, 0, {}};
     for (; sums.element < tile.tile.own; ++sums.element)
       lockstep::run(
           Step::width,
           [](void* context, int lane) {
-            const auto* const of = static_cast<Sums*>(context);
-            of->tile->sum(of->element * Step::width + lane, of->tag);
+            auto* const of = static_cast<Sums*>(context);
+            of->tile->sum(of->element * Step::width + lane, of->tag, span_after(of->dt),
+                          longest_after(of->dt), of->report);
           },
           &sums);
-    TileReport report;
-    for (Index e = 0; e < tile.tile.own; ++e)
-      tile.judge(e, span_after(dt), longest_after(dt), report);
-    return report;
+    return sums.report;
   }
   /// Every tile hears the same.
   TileReport exchange(const std::vector<TileReport>& told, std::uint32_t tag, bool first) const {

@@ -120,7 +120,7 @@ struct TileSearch {
       s.reference[g] = state.position;
       s.margin[g] = margin;
       const bool is_out = is_gone(step.memory.fixed[e]);
-      s.spheres[g] = {state.position, is_out ? gone : state.radius, margin};
+      s.show(g, {state.position, is_out ? gone : state.radius, margin});
       constexpr double fast = 1e4;  // the sums of CommonMotion leave out what is faster still
       lost = lost || !is_finite(grown_box(state.position, state.radius, margin, 0.0)) ||
              !(dot(state.velocity, state.velocity) < fast * fast);
@@ -148,7 +148,7 @@ struct TileSearch {
     for (Index e = thread; e < tile.own; e += threads) {
       const Index g = all.tiles.own[tile.first_own + e];
       memory.place[e] = g;
-      const NearSphere own = s.spheres[g];
+      const NearSphere own = s.sphere(g);
       memory.own[e] = own;
       memory.boxes[e] = grown_box(own.position, own.radius, own.margin, 0.0);
       memory.as_b[e] = memory.all[e] = 0;
@@ -166,7 +166,9 @@ struct TileSearch {
       meet_in_tile();
       stage(first, thread, threads);
       meet_in_tile();
-      for (Index k = thread; k < memory.counters[2]; k += threads) meet_own(memory.staged[k]);
+      const Index lanes = threads < 32 ? threads : 32;  // that take one of the others
+      for (Index k = thread / lanes; k < memory.counters[2]; k += threads / lanes)
+        meet_own(memory.staged[k], thread % lanes, lanes);
       meet_in_tile();
     }
     if (memory.counters[5] > memory.near_room) return true;  // of all threads
@@ -290,11 +292,10 @@ struct TileSearch {
         memory.motion[4 * all.tiles.count + k - sums] = sum;
       }
       if (k >= 6) continue;
-      const Index axis = k % 3;
       double most = -1e300;
       for (Index e = 0; e < tile.own; ++e) {
-        const double* const box = reinterpret_cast<const double*>(memory.boxes + e);
-        if (memory.own[e].radius != gone) most = max(most, k < 3 ? -box[axis] : box[3 + axis]);
+        const double edge = reinterpret_cast<const double*>(memory.boxes + e)[k];
+        most = memory.own[e].radius != gone ? max(most, k < 3 ? -edge : edge) : most;
       }
       reinterpret_cast<double*>(memory.box)[k] = k < 3 ? -most : most;
     }
@@ -308,7 +309,7 @@ struct TileSearch {
       NearSphere spheres[ahead];
       BR_UNROLL
       for (Index k = 0; k < ahead; ++k)
-        spheres[k] = all.search.spheres[g + k * threads < end ? g + k * threads : g];
+        spheres[k] = all.search.sphere(g + k * threads < end ? g + k * threads : g);
       BR_UNROLL
       for (Index k = 0; k < ahead; ++k) {
         const NearSphere& sphere = spheres[k];
@@ -319,10 +320,10 @@ struct TileSearch {
     }
   }
   /// Finds the own elements that another may touch, if no link holds them.
-  BR_HD void meet_own(const StagedSphere& other) const {
+  BR_HD void meet_own(const StagedSphere& other, Index lane, Index lanes) const {
     const NearSphere sphere = other.sphere;
     const Box box = grown_box(sphere.position, sphere.radius, sphere.margin, 0.0);
-    for (Index e = 0; e < tile.own; ++e) {
+    for (Index e = lane; e < tile.own; e += lanes) {
       const Index g = memory.place[e];
       const NearSphere& own = memory.own[e];
       const bool near = g < other.element  // places and global ids ascend alike
@@ -353,13 +354,22 @@ struct TileSearch {
   /// Whether a link still holds two elements.
   BR_HD bool is_held(Index low, Index high) const {
     const TileSearchCase& s = all.search;
-    for (Index k = s.linked_starts[low]; k < s.linked_starts[low + 1]; ++k) {
-      if (s.linked_partners[k] != high) continue;
-      const Index link = s.linked_links[k];
-      if (link < s.concrete
-              ? !all.concrete_released(link)
-              : link < s.concrete + s.steel || !s.interface_released(link - s.concrete - s.steel))
-        return true;
+    const Index end = s.linked_starts[low + 1];
+    constexpr Index ahead = 8;  // are on their way at one time
+    for (Index first = s.linked_starts[low]; first < end; first += ahead) {
+      bool here = false;
+      BR_UNROLL
+      for (Index k = 0; k < ahead; ++k)
+        here = s.linked_partners[first + k < end ? first + k : first] == high || here;
+      if (!here) continue;
+      for (Index k = first; k < first + ahead && k < end; ++k) {
+        if (s.linked_partners[k] != high) continue;
+        const Index link = s.linked_links[k];
+        if (link < s.concrete
+                ? !all.concrete_released(link)
+                : link < s.concrete + s.steel || !s.interface_released(link - s.concrete - s.steel))
+          return true;
+      }
     }
     return false;
   }
@@ -376,12 +386,21 @@ struct TileSearch {
       s.starts[tile.first_start + e] = static_cast<TilePlace>(before);
       if (e < tile.own) s.counts[memory.place[e]] = {memory.all[e] - memory.as_b[e], memory.all[e]};
     }
+    // By own element, so that a rank asks for few comparisons.
+    auto* const by_own = reinterpret_cast<Index*>(memory.near);  // it is not needed any more
+    for (Index e = thread; e < tile.own; e += threads) memory.first_pair[e] = 0;
+    meet_in_tile();
+    for (Index k = thread; k < count; k += threads) {
+      const Index own = memory.found[k].own;
+      by_own[memory.first_slot[own] + count_up(memory.first_pair[own])] = k;
+    }
+    meet_in_tile();
     constexpr TilePlace unknown = 0xffff;
     for (Index k = thread; k < count; k += threads) {
       FoundContact& one = memory.found[k];
       Index rank = 0;
-      for (Index j = 0; j < count; ++j)
-        rank += memory.found[j].own == one.own && memory.found[j].partner < one.partner ? 1 : 0;
+      for (Index j = memory.first_slot[one.own]; j < memory.first_slot[one.own + 1]; ++j)
+        rank += memory.found[by_own[j]].partner < one.partner ? 1 : 0;
       one.rank = static_cast<TilePlace>(rank);
       one.place = unknown;
       Index at = lower_bound(memory.place, 0, tile.own, one.partner);
@@ -413,9 +432,7 @@ struct TileSearch {
   BR_HD ContactCounts counted(Index begin, Index end) const {
     ContactCounts sum{0, 0};
     const Index last = end < all.force.size ? end : all.force.size;
-#if defined(__CUDA_ARCH__)
-#pragma unroll 8
-#endif
+    BR_UNROLL_BY(8)
     for (Index g = begin; g < last; ++g) {
       sum.as_a += all.search.counts[g].as_a;
       sum.all += all.search.counts[g].all;

@@ -112,60 +112,47 @@ struct TileStep : TileContent<Number> {
     if (k < tile.concrete) concrete_link<parts>(now, k);
   }
 
-  static constexpr Index width = 8;  ///< threads that add up for an element
+  static constexpr Index width = 4;  ///< threads that add up for an element
+  using SumGroup = LaneGroup<width, 32>;
+  /// Threads, as many as whole warps have, since these call shuffles together.
   BR_HD Index sum_items() const {
-    return tile.own * width;
+    return (tile.own * width + 31) / 32 * 32;
   }
 
-  /// Thread i % 8 of the sums of an own element, in the order of GatherForces: the first four add
-  /// up what it gets as a, the others as b; each along an axis, and two of the eight stiffnesses.
-  /// The load goes to all tiles at once.
-  BR_HD void sum(Index i, std::uint32_t tag) const {
-    const Index e = memory.rows[i / width];
-    const auto lane = static_cast<int>(i % width);
-    const int side = lane / 4, part = lane % 4;
-    const int axis = part < 3 ? part : 2;  // two threads have the same
-    const int column = axis + 3 * side;
-    PartSum sum{};
-    add_links(sum, e, side, column, part);
-    add_contacts(sum, e, side, column, part);
-    const LaneGroup<width> group;
-    const double other = group.from(lane ^ 4, sum.first);
-    const double load = side == 0 ? other - sum.second : sum.second + other;  // force, torque
-    if (part < 3) {
-      reinterpret_cast<double*>(memory.load + e)[column] = load;
-      put(force_words(tag) + 6 * memory.place[e] + column, ordered_bits(load), tag);
-    }
-    // Numbers 2 part and 2 part + 1 of eight: the first is turn of a, the last turn of b.
-    const float turn_b = group.from(7, sum.straight[1]);
-    BR_UNROLL
-    for (int k = 0; k < 2; ++k) {
-      const float straight = sum.straight[k] + group.from(lane ^ 4, sum.straight[k]);
-      const float turning = sum.turning[k] + group.from(lane ^ 4, sum.turning[k]);
-      const int which = 2 * part + k;
-      if (side != 0 || which == 7) continue;
-      stiffness_sum(which, e) = which == 0 ? sum.straight[0] + turn_b : straight;
-      if (which > 0) stiffness_sum(6 + which, e) = turning;
-    }
-  }
-  /// Results of an own element's sums: its critical number, and whether its margin may be
-  /// used up by the move to come.
+  /// Thread i % 4 of the sums of an own element, in the order of GatherForces: each adds up along
+  /// an axis, and two of the eight stiffnesses. The load goes to all tiles at once.
   /// @param span, longest  half of this step and the longest to come; that one  [s]
-  BR_HD void judge(Index e, float span, float longest, TileReport& report) const {
-    Symmetric<float> straight, turning;
-    BR_UNROLL
-    for (int k = 0; k < 6; ++k) {
-      straight.c[k] = stiffness_sum(1 + k, e);
-      turning.c[k] = stiffness_sum(7 + k, e);
+  /// @param report  hears of the element's critical number, and whether its margin may be used up
+  ///                by the move to come
+  BR_HD void sum(Index i, std::uint32_t tag, float span, float longest, TileReport& report) const {
+    const bool is_item = i < tile.own * width;  // otherwise the last element again, nothing told
+    const Index e = memory.rows[is_item ? i / width : tile.own - 1];
+    const auto part = static_cast<int>(i % width);
+    const int axis = part < 3 ? part : 2;  // two threads have the same
+    const Reach unforced = reach_without_force(e, axis);
+    const float room = memory.room[e];
+    const Index place = memory.place[e];
+    PartSum as_a{}, as_b{};
+    add_links(as_a, as_b, e, axis, part);
+    add_contacts(as_a, as_b, e, axis, part);
+    const double force = as_b.first - as_a.second, torque = as_b.second + as_a.first;
+    const SumGroup group;
+    const double slowest = slowest_of(group, e, part, as_a, as_b);
+    const float reach = unforced.with(force, all.move.kick.damping, span, longest),
+                square = reach * reach;
+    const float of_y = group.from(1, square), of_z = group.from(2, square);
+    if (!is_item) return;
+    if (part < 3) {
+      reinterpret_cast<double*>(&memory.load[e].force)[axis] = force;
+      reinterpret_cast<double*>(&memory.load[e].torque)[axis] = torque;
+      TileWord* const words = force_words(tag) + 6 * place;
+      put(words + axis, ordered_bits(force), tag);
+      put(words + 3 + axis, ordered_bits(torque), tag);
     }
-    const Stiffest most = stiffest(straight, turning, stiffness_sum(0, e));
-    const int fixed = memory.fixed[e];
-    const float push = is_held(fixed, 0) ? 0.0F : most.straight,
-                twist = is_held(fixed, 3) ? 0.0F : most.turning;
-    const double slowest = max(over(push, memory.mass[e]), over(twist, memory.inertia[e]));
+    if (part != 0) return;
     memory.slowest[e] = slowest;
     report.slowest = slowest > report.slowest ? slowest : report.slowest;  // NaN does not count
-    report.near = report.near || is_far(e, span, longest);
+    report.near = report.near || !(square + of_y + of_z < room);
   }
   /// This question of the forces that the tile has entered with.
   BR_HD bool near_at_entry(Index thread, Index threads) const {
@@ -348,72 +335,120 @@ struct TileStep : TileContent<Number> {
   };
   template <class Stored>
   BR_HD static PartSum read(const PairForceOf<Stored>& action, int first, int part) {
-    const float* const two = action.stiffness + 2 * part;
+    // Both at a time, where they lie so.
+    struct alignas(sizeof(Stored) == 8 ? 8 : 4) Two {
+      float first, second;
+    };
+    const Two two = reinterpret_cast<const Two*>(action.stiffness)[part];
     const float ratio = action.stiffness[8];
     return {action.numbers[first],
             action.numbers[first + 3],
-            {two[0], two[1]},
-            {ratio * two[0], ratio * two[1]}};
+            {two.first, two.second},
+            {ratio * two.first, ratio * two.second}};
   }
   /// @param action  an entry of a row
   BR_HD PartSum read(TilePlace action, int first, int part) const {
     const auto bars = static_cast<TilePlace>(tile.bars());
-    if (sizeof(Stores) != sizeof(double) && action >= bars)
-      return read(memory.actions[action - bars], first, part);
+    if (sizeof(Stores) != sizeof(double) && action > bars)
+      return read(memory.actions[action - bars - 1], first, part);
     return read(memory.bar_actions[action], first, part);
   }
   /// Without a division of zero, for which a GPU takes a slow way.
   BR_HD static double over(float stiffness, double inertia) {
     return stiffness > 0.0F ? static_cast<double>(stiffness) / inertia : 0.0;
   }
-  BR_HD float& stiffness_sum(int which, Index e) const {
-    return memory.stiffness_sums[which * tile.own + e];
-  }
-  /// The links of a row, two of which are read before the first is added.
-  BR_HD void add_links(PartSum& sum, Index e, int side, int column, int part) const {
-    const TilePlace *const starts = memory.rows + tile.own, *const rows = starts + 2 * tile.own + 1;
-    const Index end = starts[2 * e + side + 1];
-    Index k = starts[2 * e + side];
-    for (; k + 1 < end; k += 2) {
-      const PartSum first = read(rows[k], column, part), second = read(rows[k + 1], column, part);
-      sum.add(first);
-      sum.add(second);
+  /// The links of both rows of an element, which are of one even length: zeros fill them up. No sum
+  /// is -0, so that these leave it as it is.
+  BR_HD void add_links(PartSum& as_a, PartSum& as_b, Index e, int axis, int part) const {
+    struct alignas(2 * sizeof(TilePlace)) Two {
+      TilePlace first, second;
+    };
+    const TilePlace* const starts = memory.rows + tile.own + 2 * e;
+    const Index length = (starts[1] - starts[0]) / 2;
+    const Two* a = reinterpret_cast<const Two*>(memory.rows + tile.first_entry()) + starts[0] / 2;
+    const Two *const end = a + length, *b = end;
+    for (; a < end; ++a, ++b) {
+      const Two in_a = *a, in_b = *b;
+      const PartSum of_a = read(in_a.first, axis, part), of_b = read(in_b.first, axis + 3, part),
+                    next_a = read(in_a.second, axis, part),
+                    next_b = read(in_b.second, axis + 3, part);
+      as_a.add(of_a);
+      as_b.add(of_b);
+      as_a.add(next_a);
+      as_b.add(next_b);
     }
-    if (k < end) sum.add(read(rows[k], column, part));
   }
-  BR_HD void add_contacts(PartSum& sum, Index e, int side, int column, int part) const {
-    for (Index k = memory.starts[e]; k < memory.starts[e + 1]; ++k)
-      if (memory.acts[k] != 0 && memory.contacts[k].side == side)
-        sum.add(read(*this->action_of(k), column, part));
+  BR_HD void add_contacts(PartSum& as_a, PartSum& as_b, Index e, int axis, int part) const {
+    for (Index k = memory.starts[e]; k < memory.starts[e + 1]; ++k) {
+      if (memory.acts[k] == 0) continue;
+      const PairForce& action = *this->action_of(k);
+      if (memory.contacts[k].side == 0)
+        as_a.add(read(action, axis, part));
+      else
+        as_b.add(read(action, axis + 3, part));
+    }
+  }
+  /// The largest stiffness over inertia of an element, by all of its threads.  [1/s2]
+  BR_HD double slowest_of(const SumGroup& group, Index e, int part, const PartSum& as_a,
+                          const PartSum& as_b) const {
+    const int fixed = memory.fixed[e];
+    const double mass = memory.mass[e], inertia = memory.inertia[e];
+    Symmetric<float> straight, turning;  // numbers 1 to 6 of the eight that threads have by twos
+    BR_UNROLL
+    for (int k = 0; k < 2; ++k) {
+      const float s = as_a.straight[k] + as_b.straight[k], t = as_a.turning[k] + as_b.turning[k];
+      BR_UNROLL
+      for (int from = 0; from < width; ++from) {
+        const int component = 2 * from + k - 1;
+        if (component < 0 || component > 5) continue;
+        straight.c[component] = group.from(from, s);
+        turning.c[component] = group.from(from, t);
+      }
+    }
+    const float turn = group.from(0, as_a.straight[0]) + group.from(3, as_b.straight[1]);
+    const bool turns = part % 2 != 0;  // which of stiffest()'s numbers a thread finds
+    Symmetric<float> c;
+    BR_UNROLL
+    for (int k = 0; k < 6; ++k) c.c[k] = turns ? turning.c[k] : straight.c[k];
+    const float mean = c.mean(), most = (turns ? turn - mean : mean) + sqrtf(c.square_spread());
+    const float largest = is_held(fixed, turns ? 3 : 0) ? 0.0F : most;
+    const double slow = over(largest, turns ? inertia : mass);
+    return max(group.from(0, slow), group.from(1, slow));
   }
   /// Whether an own element may be further from its reference than its margin after the move to
   /// come: its force gives it its velocity. In single precision, with room for rounding; NaN counts
   /// as far.
   BR_HD bool is_far(Index e, float span, float longest) const {
-    const float over_mass = memory.over_mass[e];
     const Vec3& force = memory.load[e].force;
-    const float x = reach_of(e, 0, force.x, over_mass, span, longest),
-                y = reach_of(e, 1, force.y, over_mass, span, longest),
-                z = reach_of(e, 2, force.z, over_mass, span, longest);
+    const double damping = all.move.kick.damping;
+    const float x = reach_without_force(e, 0).with(force.x, damping, span, longest),
+                y = reach_without_force(e, 1).with(force.y, damping, span, longest),
+                z = reach_without_force(e, 2).with(force.z, damping, span, longest);
     return !(x * x + y * y + z * z < memory.room[e]);
   }
-  /// How far along an axis.  [m]
-  BR_HD float reach_of(Index e, int axis, double force, float over_mass, float span,
-                       float longest) const {
+  /// How far an element may get along an axis: from its reference, its speed, the acceleration of
+  /// gravity. None of the last three where it is held.
+  struct Reach {
+    float away, speed, weight, over_mass;  ///<  [m], [m/s], [m/s2], [1/kg]
+    /// @returns it  [m]
+    BR_HD float with(double force, double damping, float span, float longest) const {
+      const float gained = fabsf(static_cast<float>(force)) * over_mass + weight;
+      const float driven = static_cast<float>(1.0 + damping) * gained;
+      return away + longest * (speed + span * driven);
+    }
+  };
+  BR_HD Reach reach_without_force(Index e, int axis) const {
     const ElementState& state = memory.state[e];
     const auto away =
         static_cast<float>(reinterpret_cast<const double*>(&state.position)[axis] -
                            reinterpret_cast<const double*>(memory.reference + e)[axis]);
-    if ((memory.fixed[e] >> axis & 1) != 0) return fabsf(away);
-    const auto speed =
-        fabsf(static_cast<float>(reinterpret_cast<const double*>(&state.velocity)[axis]));
+    const auto speed = static_cast<float>(reinterpret_cast<const double*>(&state.velocity)[axis]);
     const Vec3& gravity = all.move.kick.gravity;
     const auto weight = static_cast<float>(axis == 0   ? gravity.x
                                            : axis == 1 ? gravity.y
                                                        : gravity.z);
-    const float gained = fabsf(static_cast<float>(force)) * over_mass + fabsf(weight);
-    const auto driven = static_cast<float>(1.0 + all.move.kick.damping) * gained;
-    return fabsf(away) + longest * (speed + span * driven);
+    if ((memory.fixed[e] >> axis & 1) != 0) return {fabsf(away), 0.0F, 0.0F, 0.0F};
+    return {fabsf(away), fabsf(speed), fabsf(weight), memory.over_mass[e]};
   }
 };
 

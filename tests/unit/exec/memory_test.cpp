@@ -21,5 +21,16 @@ TEST(ArrayMemory, PeakCountsFromWhereItWasForgotten) {
   EXPECT_LT(peak_array_bytes(), alive + sizeof(double) * large);
 }
 
+TEST(ArrayMemory, KeepsWhatWasWrittenBeyondTheEnd) {
+  Buffer<int> numbers(Space::host, 2);
+  numbers.reserve(8);
+  const int* const memory = numbers.data();
+  for (int k = 0; k < 5; ++k) numbers.data()[k] = 10 + k;
+  numbers.extend_to(5);
+  ASSERT_EQ(numbers.size(), 5);
+  EXPECT_EQ(numbers.data(), memory);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(numbers.host()[static_cast<std::size_t>(k)], 10 + k);
+}
+
 }  // namespace memory_test
 }  // namespace breccia
