@@ -5,8 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/commands.hpp"
+#include "app/damping_option.hpp"
 #include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
@@ -28,13 +30,14 @@ struct CalibrateCommand {
   std::string path, material, folder, method = "secant";
   std::vector<std::string> overrides, targets;
   int seeds = 2, elements = 1200, steps = 0;
+  std::optional<double> damping;
   SideBySideOptions options;
 
   int execute() const {
     const Case read = load_case(path, overrides);
     tell_notes(read.notes);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config)) {
-      const lab::Sample sample = lab::sample_of(*concrete, material);
+      const lab::Sample sample = damped(lab::sample_of(*concrete, material), damping);
       if (sample.material.law == "ldpm")
         return find(
             read, sample,
@@ -43,9 +46,11 @@ struct CalibrateCommand {
                         1e3 * sample.material.mix.smallest, 1e3 * sample.material.mix.largest));
       return find(read, sample,
                   fmt::format("packings of {} elements in the prism, compactness {}, size ratio "
-                              "{}, interaction range {}",
-                              elements, sample.compactness, sample.size_ratio, sample.range));
+                              "{}, interaction range {}, local damping {}",
+                              elements, sample.compactness, sample.size_ratio, sample.range,
+                              sample.damping));
     }
+    refuse_damping(damping);
     return find(read, lab::rock_sample_of(rock_case(read), material),
                 fmt::format("meshes of {} triangles in the plate of 50 x 100 mm", elements));
   }
@@ -118,6 +123,7 @@ void add_calibrate(CLI::App& program, int& exit_code) {
                    "secant, or by NLopt cobyla (then sbplx), sbplx, bobyqa")
       ->type_name("NAME")
       ->check(CLI::IsMember({"secant", "cobyla", "sbplx", "bobyqa"}));
+  add_damping(*command, calibrate->damping);
   add_repeated(command, "--set", calibrate->overrides, "override a key of the case", "KEY=VALUE");
   command->add_option("-o,--out", calibrate->folder, "default: out/<case>_<material>_calibration")
       ->type_name("DIR");

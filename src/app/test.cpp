@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "app/commands.hpp"
+#include "app/damping_option.hpp"
 #include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
@@ -49,13 +51,15 @@ struct TestCommand {
   std::vector<std::string> overrides, targets, only;
   int seeds = 3, elements = 1200;
   std::int64_t first_seed = 1;
+  std::optional<double> damping;
   SideBySideOptions options;
 
   int execute() const {
     const Case read = load_case(path, overrides);
     tell_notes(read.notes);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config))
-      return of_concrete(read, lab::sample_of(*concrete, material));
+      return of_concrete(read, damped(lab::sample_of(*concrete, material), damping));
+    refuse_damping(damping);
     const lab::RockSample rock = lab::rock_sample_of(rock_case(read), material);
     const auto wanted = all_targets(targets, rock.material.use);
     return make(read, rock, lab::rock_tests(lab::side_pressure(wanted, rock.material.joint)));
@@ -168,6 +172,7 @@ void add_test(CLI::App& program, int& exit_code) {
                    "elements of the prism, triangles of the plate; default: 1200")
       ->type_name("N")
       ->check(CLI::Range(200, 1000000));
+  add_damping(*command, test->damping);
   add_repeated(command, "--set", test->overrides, "override a key of the case", "KEY=VALUE");
   command->add_option("-o,--out", test->folder, "default: out/<case>_<material>_test")
       ->type_name("DIR");

@@ -352,7 +352,7 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
   dem::Config c;
   c.title = test.title;
   c.seed = seed;
-  c.local_damping = 0.3;
+  c.local_damping = sample.damping;
   c.materials = {sample.material};
   c.materials[0].rate = "none";  // all of them are quasi-static, though they load in milliseconds
   c.contact = sample.contact;
@@ -388,7 +388,7 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
       load_strips(c, sample, 0.05);
       break;
     case Loading::bending:
-      c.local_damping = 0.05;  // more would be work of the falling halves
+      c.local_damping = std::min(sample.damping, 0.05);  // more: work of the falling halves
       c.time.end = 7e-3;
       if (test.notch > 0.0) cut_notch(c, sample, test.size, radius, folder);
       load_beam(c, test.size, radius, 0.08, test.apart);

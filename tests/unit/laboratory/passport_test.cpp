@@ -78,6 +78,15 @@ TEST(Specimens, BeamsLieOnLinesThatHoldAFewElements) {
   }
 }
 
+TEST(Specimens, HaveTheDampingThatIsAskedFor) {
+  Sample sample = concrete();
+  EXPECT_EQ(case_of(test_named("compression_prism"), sample, 1, ".").local_damping, 0.3);
+  EXPECT_EQ(case_of(test_named("bending_plain"), sample, 1, ".").local_damping, 0.05);
+  sample.damping = 0.02;
+  EXPECT_EQ(case_of(test_named("compression_prism"), sample, 1, ".").local_damping, 0.02);
+  EXPECT_EQ(case_of(test_named("bending_plain"), sample, 1, ".").local_damping, 0.02);
+}
+
 TEST(Specimens, AreOfTheCasesMaterialPackingAndRange) {
   dem::Config c;
   c.materials.resize(1);
@@ -402,6 +411,7 @@ pack = { count = 100, compactness = 0.56 }
   refused("--target 'poisson=20'", "20 is outside of 0 to 0.5");
   refused("--target tension=4e6", "tension is asked for twice");
   refused("--first-seed -3", "--first-seed");
+  refused("--damping 1.5", "--damping");
   EXPECT_EQ(
       wait_for(start_program("test '" + scratch / "c.toml' --material d", scratch / "output.txt")),
       2);

@@ -1,0 +1,39 @@
+// Concretes of the library belong to the local damping of the specimens that they were found with.
+
+#include <gtest/gtest.h>
+
+#include "physics/dem/scene.hpp"
+
+namespace breccia::dem {
+namespace library_damping_test {
+
+using testing::Scene;
+
+std::vector<std::string> told(const std::string& use, double damping) {
+  Scene s;
+  s.material("c", "concrete", 30e9, 0.2, 2500.0);
+  s.config.materials.back().use = use;
+  s.config.local_damping = damping;
+  s.sphere({0.0, 0.0, 0.0}, 0.01);
+  s.sphere({0.02, 0.0, 0.0}, 0.01);
+  s.link(0, 1);
+  return s.world().given->warnings;
+}
+
+TEST(LibraryDamping, is_told_of_where_a_case_runs_without_any) {
+  const std::vector<std::string> warnings = told("C30", 0.0);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(
+      warnings[0].starts_with("material.c: C30 was found with local_damping = 0.3, and "
+                              "this case has 0."))
+      << warnings[0];
+}
+
+TEST(LibraryDamping, is_not_told_of_with_damping_or_of_a_material_of_ones_own) {
+  EXPECT_TRUE(told("C30", 0.3).empty());
+  EXPECT_TRUE(told("C30", 0.05).empty());
+  EXPECT_TRUE(told("", 0.0).empty());
+}
+
+}  // namespace library_damping_test
+}  // namespace breccia::dem
