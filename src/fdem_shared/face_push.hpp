@@ -272,8 +272,11 @@ struct FaceContactPush {
       if (all.empty() || all.back().pair[0] != p.pair[0]) a = after.element(p.pair[0]);
       all.push_back(p);
       const typename After::Element b = after.element(p.pair[1]);
-      for (const double way : {0.0, p.way})
+      const auto add_at = [&](double way) {
         elsewhere.add(p.couple, after(p.pair[0], a, way), after(p.pair[1], b, way));
+      };
+      add_at(0.0);
+      add_at(p.way);
     }
     elsewhere.evaluate(run);
     ServoReading r;
