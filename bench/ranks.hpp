@@ -28,7 +28,7 @@ std::vector<Measurement> measure_weak_plate(const Exec& exec, Communicator* rank
 /// A plate: as many triangles in all, whatever the number of ranks.
 std::vector<Measurement> measure_strong_plate(const Exec& exec, Communicator* ranks,
                                               const RankScale& scale);
-/// What comes before the first step of a large model of spheres, part by part: slabs side by side,
+/// The work before the first step of a large model of spheres, part by part: slabs side by side,
 /// and one body cut from a cell that is repeated; of about a million elements each. Of one rank.
 std::vector<Measurement> measure_set_up(const Exec& exec, Communicator* ranks,
                                         const RankScale& scale);

@@ -1,4 +1,4 @@
-// What follows from elements and links: laws for devices, rows of links, how threads share them.
+// Lists that follow from elements and links: laws for devices, rows of links, shares of threads.
 
 #include <algorithm>
 #include <limits>

@@ -90,7 +90,7 @@ class Buffer {
       clear_bytes(data_ + size_, space_, static_cast<std::size_t>(size - size_) * sizeof(T));
     size_ = size;
   }
-  /// Likewise, but items beyond the old ones are for the caller to write: no page of their memory
+  /// Items beyond the old ones are for the caller to write: no page of their memory
   /// is taken here.
   void resize_unfilled(Index size) {
     reserve(size);

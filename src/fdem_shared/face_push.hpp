@@ -1,5 +1,5 @@
 #pragma once
-// What elements and contacts at the face of a body will push a support with in the step to come:
+// Forces of elements and contacts at the face of a body on a support in the step to come:
 // for its servo (fdem_shared/servo_forces.hpp).
 
 #include <type_traits>

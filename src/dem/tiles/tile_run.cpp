@@ -49,7 +49,7 @@ __device__ TileReport report_of_warp(TileReport own) {
   own.near = __any_sync(~0U, own.near ? 1 : 0) != 0;
   return own;
 }
-/// Likewise of several warps.
+/// Findings of several warps together.
 template <int warps>
 __device__ TileReport news_of(const TileReport* of_warp) {
   TileReport report = of_warp[0];

@@ -44,7 +44,7 @@ class LeftOver {
     pack.joint[pack.count++] = i;
     if (pack.count == width()) run(pack);
   }
-  /// Those that still wait.
+  /// Joints that still wait.
   void finish() {
     for (AlikeJoints& pack : packs_) {
       if (pack.count == 0) continue;

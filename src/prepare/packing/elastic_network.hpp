@@ -50,7 +50,7 @@ class ElasticNetwork {
     Vec3 normal;
     double arm_a, arm_b, normal_stiffness, shear_stiffness, turn_stiffness;
   };
-  /// What a spring does to its ends: the force on b, and torques over the mean radius.
+  /// Loads of a spring on its ends: the force on b, and torques over the mean radius.
   struct Action {
     Vec3 force, on_a, on_b;
   };

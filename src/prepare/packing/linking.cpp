@@ -72,7 +72,7 @@ struct Neighbourhood {
   }
 };
 
-/// What runs of elements have found, in the order of the elements.
+/// Finds of runs of elements, in the order of the elements.
 using Found = std::vector<PlainVector<Candidate>>;
 
 /// add(member, found) for each of the members.

@@ -235,7 +235,7 @@ void SoftSpheres::list_visitors() {
   overlap_.resize(neighbour_.size());
 }
 
-/// What a pair of sphere i does.
+/// The push of a pair of sphere i.
 void SoftSpheres::meet(std::size_t i, Index pair) {
   const auto p = static_cast<std::size_t>(pair), j = static_cast<std::size_t>(neighbour_[p]);
   Vec3 apart = position_[j] - position_[i];
