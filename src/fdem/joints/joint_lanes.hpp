@@ -14,7 +14,7 @@ struct AlikeJoints {
   Failure how = Failure::none;
 };
 
-/// The work of JointForces::slow() for each of them, unless it collapses, breaks, fails with the rock
+/// Work of JointForces::slow() for each of them, unless it collapses, breaks, fails with the rock
 /// or begins to soften. @returns a bit for each that does, of which nothing is written
 template <class R, class Number>
 inline unsigned run_alike(const JointForces<Number>& joints, const AlikeJoints& pack) {
