@@ -1,4 +1,4 @@
-// Numbers that a hash does not hold, for any width of vector: work of joints that soften, slide and stay
+// Numbers beside the hash, for any width of vector: work of joints that soften, slide and stay
 // whole beside rock that may fail, and work of local damping, loads and supports.
 
 #include <gtest/gtest.h>
