@@ -93,7 +93,6 @@ struct PlatenPush {
     return r;
   }
   BR_HD void add_to(ServoReading& r, Index item) const {
-    constexpr double share = 1e-6;  // of an element: how far it goes to feel the stiffness
     const Index i = listed[item], a = couples.a[i], b = couples.b[i];
     const bool by_a = led(a);
     if (by_a == led(b) || !owned(by_a ? b : a)) return;
@@ -104,7 +103,7 @@ struct PlatenPush {
     place(a, dt, 0.0, x[0]);
     place(b, dt, 0.0, x[1]);
     const double next = push_of(i, by_a, x);
-    const double way = share * 100.0 * Shape::near(reference[by_a ? a : b]);
+    const double way = little_way<Shape>(reference[by_a ? a : b]);
     const auto stiffness_over = [&, this](double farther) {
       place(by_a ? a : b, dt, along * farther, x[by_a ? 0 : 1]);
       return max(0.0, along * (push_of(i, by_a, x) - next) / farther);
