@@ -14,7 +14,7 @@
 //   set(now)               gives the kernel the time of a step
 //
 // A kernel whose items nothing reads ahead has operator()(i) alone, and may have set(now). One that
-// gives several threads to an item has a plain Loaded, and `width`.
+// gives several threads to an item has a plain Loaded, and `width`; whole warps call it.
 
 #include <type_traits>
 #include <utility>

@@ -226,6 +226,12 @@ constexpr int lanes_of() {
   else
     return 1;
 }
+/// Threads that a kernel of `count` threads is launched by: those of whole warps, if several work
+/// on an item.
+template <class Kernel>
+constexpr Index threads_for(Index count) {
+  return lanes_of<Kernel>() > 1 ? whole_warps(count) : count;
+}
 
 #if defined(BR_CUDA) && !defined(__CUDACC__)
 inline namespace host_loops {
@@ -251,13 +257,12 @@ class ShadowLaunch {
   }
   void work() {
     const KernelScope scope;
-    constexpr int lanes = lanes_of<Kernel>();
-    for (first_ = 0; first_ < count_; first_ += lanes)
-      if constexpr (lanes == 1)
+    constexpr bool in_warps = lanes_of<Kernel>() > 1;
+    for (first_ = 0; first_ < count_; first_ += in_warps ? lockstep::lanes : 1)
+      if constexpr (!in_warps)
         one(first_);
       else
         lockstep::run(
-            lanes,
             [](void* self, int lane) {
               auto* const launch = static_cast<ShadowLaunch*>(self);
               launch->one(launch->first_ + lane);
@@ -333,13 +338,14 @@ void for_each_part([[maybe_unused]] const Exec& exec, const Parts<Kernels...>& p
 }
 template <class First, class... Rest>
 Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...>& rest) {
-  return {count, kernel, rest};
+  return {threads_for<First>(count), kernel, rest};
 }
 
 /// kernel(i) for every i in [0, count), and note() of the least that they return, on a device.
 template <class Kernel, class Note>
-void for_each_noting([[maybe_unused]] const Exec& exec, Index count, const Kernel& kernel,
+void for_each_noting([[maybe_unused]] const Exec& exec, Index items, const Kernel& kernel,
                      const Note& note) {
+  const Index count = threads_for<Kernel>(items);
 #if defined(__CUDACC__)
   if (exec.space == Space::cuda) {
     constexpr int threads = 128;

@@ -90,11 +90,11 @@ struct Lane {
 
 /// The lanes of one thread of the processor.
 struct Lanes {
-  std::array<Lane, most_lanes> all;
+  std::array<Lane, lanes> all;
   /// Two sets of numbers: a lane may be one exchange ahead of the others.
-  std::array<std::array<double, most_lanes>, 2> numbers{};
+  std::array<std::array<double, lanes>, 2> numbers{};
   Stack caller;
-  int count = 0, current = 0;
+  int current = 0;
   void (*work)(void*, int) = nullptr;
   void* context = nullptr;
 
@@ -143,14 +143,14 @@ void jump(Stack& from, Stack& to) {
 void live() {
   arrive((*lanes_here)[lanes_here->current].stack);
   for (;;) {
-    Lanes& lanes = *lanes_here;
-    lanes.work(lanes.context, lanes.current);
-    Lane& lane = lanes[lanes.current];
+    Lanes& here = *lanes_here;
+    here.work(here.context, here.current);
+    Lane& lane = here[here.current];
     lane.ended = true;
     int next = 0;
-    while (next < lanes.count && lanes[next].ended) ++next;
-    lanes.current = next < lanes.count ? next : 0;
-    jump(lane.stack, next < lanes.count ? lanes[next].stack : lanes.caller);
+    while (next < lanes && here[next].ended) ++next;
+    here.current = next < lanes ? next : 0;
+    jump(lane.stack, next < lanes ? here[next].stack : here.caller);
   }
 }
 
@@ -184,13 +184,12 @@ void make(Lane& lane) {
 
 }  // namespace
 
-void run(int lanes, void (*work)(void*, int), void* context) {
+void run(void (*work)(void*, int), void* context) {
   if (lanes_here == nullptr) {
     owned_lanes = std::make_unique<Lanes>();
     lanes_here = owned_lanes.get();
   }
   Lanes& here = *lanes_here;
-  here.count = lanes;
   here.work = work;
   here.context = context;
   here.current = 0;
@@ -209,14 +208,14 @@ int lane() {
 }
 
 const double* exchange(double own) {
-  Lanes& lanes = *lanes_here;
-  Lane& lane = lanes[lanes.current];
-  auto& numbers = lanes.numbers[static_cast<std::size_t>(lane.exchanges++ % 2)];
-  numbers[static_cast<std::size_t>(lanes.current)] = own;
-  const int next = lanes.current + 1 < lanes.count ? lanes.current + 1 : 0;
-  BR_ASSERT(!lanes[next].ended);  // all lanes meet equally often
-  lanes.current = next;
-  jump(lane.stack, lanes[next].stack);
+  Lanes& here = *lanes_here;
+  Lane& lane = here[here.current];
+  auto& numbers = here.numbers[static_cast<std::size_t>(lane.exchanges++ % 2)];
+  numbers[static_cast<std::size_t>(here.current)] = own;
+  const int next = here.current + 1 < lanes ? here.current + 1 : 0;
+  BR_ASSERT(!here[next].ended);  // all lanes meet equally often
+  here.current = next;
+  jump(lane.stack, here[next].stack);
   return numbers.data();
 }
 

@@ -11,11 +11,11 @@ namespace breccia {
 
 namespace lockstep {
 
-inline constexpr int most_lanes = 32;
+inline constexpr int lanes = 32;
 
-/// Calls work(context, lane) for lanes 0 to `lanes` - 1, each on a stack of its own on this thread.
-/// A lane that calls exchange() waits there until all others have called it, too.
-void run(int lanes, void (*work)(void* context, int lane), void* context);
+/// Calls work(context, lane) for the lanes of a warp, each on a stack of its own on this thread. A
+/// lane that calls exchange() waits there until all others have called it, too.
+void run(void (*work)(void* context, int lane), void* context);
 
 /// Number of the lane that runs on this thread; 0 outside of run().
 int lane();
@@ -25,55 +25,74 @@ const double* exchange(double own);
 
 }  // namespace lockstep
 
-/// The neighbouring lanes of a warp that work on one item, `width` of them. All of them call each
-/// function, in the same order.
-/// @tparam together  lanes that call each function at a time: if all 32 of a warp do, nvcc need not
-///                   find out which do
-template <int width, int together = width>
+/// Threads of whole warps, as many as `threads` need.
+BR_HD constexpr Index whole_warps(Index threads) {
+  return (threads + lockstep::lanes - 1) / lockstep::lanes * lockstep::lanes;
+}
+
+/// The neighbouring lanes of a warp that work on one item, `width` of them. All lanes of the warp
+/// call each function, in the same order: those of groups that have nothing to do go along. A
+/// device then need not find out which lanes are there, and groups do not wait for each other's
+/// turn.
+template <int width>
 class LaneGroup {
  public:
+  static_assert(width < lockstep::lanes && lockstep::lanes % width == 0);
+
   BR_HD LaneGroup() {
 #if defined(__CUDA_ARCH__)
-    first_ = threadIdx.x / width * width % 32;
-    mask_ = (together == 32 ? ~0U : ((1U << width % 32) - 1) << first_);
+    first_ = static_cast<int>(threadIdx.x % 32 / width * width);
+#else
+    first_ = lockstep::lane() / width * width;
 #endif
   }
   /// x of lane `of`.
   template <class T>
   BR_HD T from(int of, T x) const {
 #if defined(__CUDA_ARCH__)
-    return __shfl_sync(mask_, x, of, width);
+    return __shfl_sync(~0U, x, of, width);
 #else
     static_assert(sizeof(T) <= sizeof(double));
     double sent = 0.0;
     std::memcpy(&sent, &x, sizeof x);
     const double* const all = lockstep::exchange(sent);
-    std::memcpy(&x, all + of % width, sizeof x);
+    std::memcpy(&x, all + first_ + of % width, sizeof x);
     return x;
 #endif
   }
   /// Bit k: `flag` of lane k.
   BR_HD unsigned ballot(bool flag) const {
 #if defined(__CUDA_ARCH__)
-    return (__ballot_sync(mask_, flag) & mask_) >> first_;
+    return __ballot_sync(~0U, flag) >> first_ & ((1U << width) - 1U);
 #else
-    const double* const all = lockstep::exchange(flag ? 1.0 : 0.0);
+    const double* const all = lockstep::exchange(flag ? 1.0 : 0.0) + first_;
     unsigned bits = 0;
     for (int k = 0; k < width; ++k) bits |= all[k] > 0.0 ? 1U << k : 0U;
     return bits;
 #endif
   }
+  /// Whether a lane of any group of the warp has `flag`: where one has work, all go there.
+  BR_HD bool any_of_warp(bool flag) const {
+#if defined(__CUDA_ARCH__)
+    return __any_sync(~0U, flag) != 0;
+#else
+    const double* const all = lockstep::exchange(flag ? 1.0 : 0.0);
+    bool any = false;
+    for (int k = 0; k < lockstep::lanes; ++k) any = any || all[k] > 0.0;
+    return any;
+#endif
+  }
   /// Waits until all lanes are here: each then sees what the others wrote before.
   BR_HD void wait() const {
 #if defined(__CUDA_ARCH__)
-    __syncwarp(mask_);
+    __syncwarp();
 #else
     lockstep::exchange(0.0);
 #endif
   }
 
  private:
-  unsigned mask_ = 0, first_ = 0;
+  int first_ = 0;  ///< of the group's lanes
 };
 
 }  // namespace breccia

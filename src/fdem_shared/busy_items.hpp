@@ -8,6 +8,9 @@
 // BusyAlone evaluates the list; the sums of forces empty it (EmptiesLists). The order of the list
 // changes from run to run, but each item writes only its own forces.
 
+#include <algorithm>
+#include <bit>
+
 #include "core/kernel.hpp"
 #include "exec/buffer.hpp"
 #include "exec/launch.hpp"
@@ -57,8 +60,15 @@ struct ListBusy {
   }
 };
 
+/// Groups of threads that share a list of couples out: whole warps of them.
+/// @param most  as many as run at a time, and more
+template <class Wide>
+Index groups_of(Index couples, Index most) {
+  return whole_warps(std::min(couples, most) * Wide::width) / Wide::width;
+}
+
 /// Busy couples by the threads of `groups` groups, each of which takes every groups-th couple.
-/// @tparam Wide  kernel of all couples by `width` threads each
+/// @tparam Wide  kernel of all couples by `width` threads each; a couple beyond the last is none
 template <class Wide>
 struct BusyWide {
   static constexpr const char* name = Wide::name;
@@ -80,8 +90,9 @@ struct BusyWide {
   BR_HD void each(Index i, const Update& update) const {
     const LaneGroup<width> group;
     const Index end = count[0];
-    for (Index k = i / width; k < end; k += groups) {
-      const Index thread = busy[k] * width + i % width;
+    for (Index k = i / width; group.any_of_warp(k < end); k += groups) {
+      const Index c = k < end ? busy[k] : wide.items();
+      const Index thread = c * width + i % width;
       typename Wide::Loaded loaded;
       wide.load_early(thread, loaded);
       wide.load_late(thread, loaded);
@@ -91,9 +102,18 @@ struct BusyWide {
   }
 };
 
+/// Place of the lowest bit of a number that has one.
+BR_HD inline int lowest_bit(unsigned bits) {
+#if defined(__CUDA_ARCH__)
+  return __ffs(static_cast<int>(bits)) - 1;
+#else
+  return std::countr_zero(bits);
+#endif
+}
+
 /// Busy couples by the threads of `groups` groups: each thread looks whether one of them is due,
 /// and all of its group evaluate those that are.
-/// @tparam Wide  kernel of all couples by `width` threads each
+/// @tparam Wide  kernel of all couples by `width` threads each; a couple beyond the last is none
 template <class Wide>
 struct BusyWhereDue {
   static constexpr const char* name = Wide::name;
@@ -110,11 +130,14 @@ struct BusyWhereDue {
   BR_HD void at(double dt, Index i) const {
     const LaneGroup<width> group;
     const Index end = count[0];
-    for (Index first = i / width; first < end; first += groups * width) {
+    for (Index first = i / width; group.any_of_warp(first < end); first += groups * width) {
       const Index mine = first + groups * (i % width);
       unsigned due = group.ballot(mine < end && wide.is_due(busy[mine]));
-      for (Index k = first; due != 0; due >>= 1, k += groups)
-        if ((due & 1U) != 0) wide.evaluate(dt, busy[k], static_cast<int>(i % width));
+      while (group.any_of_warp(due != 0)) {
+        const Index c = due != 0 ? busy[first + groups * lowest_bit(due)] : wide.items();
+        due &= due - 1;
+        wide.evaluate(dt, c, static_cast<int>(i % width));
+      }
     }
   }
 };

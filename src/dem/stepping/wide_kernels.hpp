@@ -105,8 +105,13 @@ struct GatherWide {
     const int part = i % width;
     return {part < 6 ? part : 5, part};  // two threads repeat the sixth number
   }
+  /// Threads beyond the last element repeat it.
+  BR_HD Index element_of(Index i) const {
+    const Index last = gather.force.size - 1;
+    return i / width < last ? i / width : last;
+  }
   BR_HD void load_early(Index i, Loaded& loaded) const {
-    const Index e = i / width;
+    const Index e = element_of(i);
     loaded.links_a.find(rows_a.starts, e);
     loaded.links_b.find(rows_b.starts, e);
     loaded.bars.find(gather.bars.starts, e);
@@ -125,7 +130,7 @@ struct GatherWide {
   /// @returns the critical number of an element of this rank, once. A ghost lacks pairs, and its
   ///          bound may be above its owner's.
   BR_HD double update(Index i, Loaded& loaded) const {
-    const Index e = i / width;
+    const Index e = element_of(i);
     const int part = i % width;
     const Columns column = column_of(i);
     Sum as_a{0.0, 0.0F, 0.0F}, as_b{0.0, 0.0F, 0.0F};

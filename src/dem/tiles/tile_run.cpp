@@ -360,23 +360,22 @@ class TilesInTurn {
       for (Index lane = 0; lane < Step::portion; ++lane)
         tile.template pair_force<concrete_with_tiles>(now, at, lane);
   }
-  /// The sums of one element, by lanes that meet.
+  /// The sums of a few elements, by lanes that meet.
   struct Sums {
     const Step* tile;
     std::uint32_t tag;
     double dt;
-    Index element;
+    Index first;
     TileReport report;
   };
   static TileReport sums(const Step& tile, std::uint32_t tag, double dt) {
     Sums sums{&tile, tag, dt, 0, {}};
-    for (; sums.element < tile.tile.own; ++sums.element)
+    for (; sums.first < tile.sum_items(); sums.first += lockstep::lanes)
       lockstep::run(
-          Step::width,
           [](void* context, int lane) {
             auto* const of = static_cast<Sums*>(context);
-            of->tile->sum(of->element * Step::width + lane, of->tag, span_after(of->dt),
-                          longest_after(of->dt), of->report);
+            of->tile->sum(of->first + lane, of->tag, span_after(of->dt), longest_after(of->dt),
+                          of->report);
           },
           &sums);
     return sums.report;

@@ -113,10 +113,10 @@ struct TileStep : TileContent<Number> {
   }
 
   static constexpr Index width = 4;  ///< threads that add up for an element
-  using SumGroup = LaneGroup<width, 32>;
+  using SumGroup = LaneGroup<width>;
   /// Threads, as many as whole warps have, since these call shuffles together.
   BR_HD Index sum_items() const {
-    return (tile.own * width + 31) / 32 * 32;
+    return whole_warps(tile.own * width);
   }
 
   /// Thread i % 4 of the sums of an own element, in the order of GatherForces: each adds up along

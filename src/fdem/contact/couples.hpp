@@ -360,9 +360,10 @@ struct CoupleForces {
     return normal_on_a(penalty, xa, of_a, xb, of_b);
   }
 
-  BR_HD const ContactPair& law_of(Index i) const {
-    return laws[material[a[i]] * materials + material[b[i]]];
+  BR_HD Index number_of_law(Index triangle_a, Index triangle_b) const {
+    return material[triangle_a] * materials + material[triangle_b];
   }
+  BR_HD const ContactPair& law_of(Index i) const { return laws[number_of_law(a[i], b[i])]; }
   /// A new couple of which a joint is known that broke between them.
   BR_HD void begin(Index i) const {
     Vec2 xa[3], va[3], xb[3], vb[3];

@@ -20,6 +20,7 @@ using fdem_shared::Bounded;
 using fdem_shared::BusyAlone;
 using fdem_shared::BusyWide;
 using fdem_shared::emptying;
+using fdem_shared::groups_of;
 using fdem_shared::ListBusy;
 
 /// From so many joints on they have a launch of their own: they take longer then than a launch
@@ -76,12 +77,13 @@ void launch_busy_pairs(World& w, const By& by) {
     for_each_part(w.exec, part(joints, list_joints(bounded<8>(joint)), Parts<>{}));
     for_each_part(w.exec, part(couples, list_couples, Parts<>{}));
   }
-  const Index groups = std::min(couples, most_groups), threads = std::min(joints, most_threads);
-  for_each_part(w.exec,
-                part(groups * CouplesWide<Number>::width,
-                     by(BusyWide<CouplesWide<Number>>{{couple}, busy, count, groups}),
-                     part(threads, by(BusyAlone<Joint>{joint, busy_joint, joint_count, threads}),
-                          Parts<>{})));
+  const Index groups = groups_of<CouplesWide<Number>>(couples, most_groups),
+              threads = std::min(joints, most_threads);
+  // Joints first: one takes longest.
+  for_each_part(w.exec, part(threads, by(BusyAlone<Joint>{joint, busy_joint, joint_count, threads}),
+                             part(groups * CouplesWide<Number>::width,
+                                  by(BusyWide<CouplesWide<Number>>{{couple}, busy, count, groups}),
+                                  Parts<>{})));
 }
 
 /// Joints and couples.

@@ -19,6 +19,7 @@ namespace {
 using fdem_shared::Bounded;
 using fdem_shared::BusyWhereDue;
 using fdem_shared::emptying;
+using fdem_shared::groups_of;
 using fdem_shared::ListBusy;
 
 /// Groups of threads that share the list of busy couples out: as many as run at a time, and more.
@@ -61,7 +62,7 @@ struct Launches {
     const CoupleForces all = couple_kernel(w);
     const View<Index> busy = w.busy.item.view(), count = w.busy.count.view();
     for_each_part(w.exec, part(couples, by(ListBusy<CoupleForces>{all, busy, count}), Parts<>{}));
-    const Index groups = std::min(couples, most_groups);
+    const Index groups = groups_of<CouplesWide>(couples, most_groups);
     for_each_part(w.exec,
                   part(groups * CouplesWide::width,
                        by(BusyWhereDue<CouplesWide>{{all}, busy, count, groups}), Parts<>{}));

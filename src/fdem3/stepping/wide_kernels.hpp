@@ -24,9 +24,14 @@ struct CouplesWide {
   BR_HD void set(const StepTime& now) { all.set(now); }
   BR_HD double dt() const { return all.dt; }
   BR_HD bool is_due(Index c) const { return all.is_due(c); }
+  BR_HD Index items() const { return all.a.size; }
 
-  BR_HD void evaluate(double dt, Index c, int lane) const {
+  /// @param number  of a couple, or items(): then the group goes along with the others of its
+  ///                warp, looks at the last couple and leaves it alone
+  BR_HD void evaluate(double dt, Index number, int lane) const {
     const LaneGroup<width> group;
+    const bool is_item = number < items();
+    const Index c = is_item ? number : items() - 1;
     const bool of_a = lane < 4;
     const int corner = of_a ? lane : lane - 4;
     const Index own = of_a ? all.a[c] : all.b[c], other = of_a ? all.b[c] : all.a[c];
@@ -46,41 +51,47 @@ struct CouplesWide {
     const CornersInside in_target = CornersInside::of(x, target);
     const bool apart =
         boxes_apart(x, of_other, 0.0) || !(target.six_volumes > 0.0) || in_target.beyond_a_face();
-    const bool meeting = group.ballot(apart) == 0;
-    if (!meeting && resting) return;
+    const bool meeting = group.ballot(apart) == 0 && is_item;
+    bool works = is_item && (meeting || !resting);
+    if (!group.any_of_warp(works)) return;
 
+    const ContactPair& law = all.law_of(c);
+    const bool begins = meeting && is_new && all.parent_joint[c] >= 0;
+    if (group.any_of_warp(begins)) {
+      if (begins && lane == 0) cold_begin(&all, c);
+      group.wait();
+      if (begins) kept = all.state[c];
+    }
+    target.measure_heights();
+    const bool exposed = (all.exposed[own] >> corner & 1) != 0;
+    const bool reaches = meeting && (holds || (exposed && reaches_into(in_target, corner, target)));
+    const bool presses = group.ballot(reaches) != 0;
     Pressing sum;
     Vec3 force{};  // on the own corner
-    if (meeting) {
-      const ContactPair& law = all.law_of(c);
-      if (is_new && all.parent_joint[c] >= 0) {
-        if (lane == 0) cold_begin(&all, c);
-        group.wait();
-        kept = all.state[c];
-      }
-      target.measure_heights();
-      const double penalty = law.penalty * kept.scale;
-      const bool exposed = (all.exposed[own] >> corner & 1) != 0;
-      if (holds || group.ballot(exposed && reaches_into(in_target, corner, target)) != 0)
-        press(group, x, in_target, target, lane, exposed, penalty, holds, sum, force);
-      if (!holds && kept.work == 0.0) {
-        const double power = dot(force, velocity);
-        double powers = 0.0;
-        for (int k = 0; k < 4; ++k) powers += group.from(k, power) + group.from(k + 4, power);
-        note_begun(is_new, -dt * powers, kept, sum);
-      }
-      if (kept.begun > 0.0) {
-        const double share = sum.share_beyond(kept.begun);
-        force = share * force;
-        sum.on_a = share * sum.on_a;
-      }
-      if (sum.rubs(law)) {
-        double share[4];
-        Target::of(x).coordinates(sum.middle(), share);
-        Vec3 rate{};  // of a against b
-        for (int k = 0; k < 4; ++k)
-          rate += group.from(0, share[k]) * vector_from(k, velocity) -
-                  group.from(4, share[k]) * vector_from(k + 4, velocity);
+    if (group.any_of_warp(presses))
+      press(group, x, in_target, target, lane, exposed, law.penalty * kept.scale, presses, holds,
+            sum, force);
+    const bool may_begin = meeting && !holds && kept.work == 0.0;
+    if (group.any_of_warp(may_begin)) {
+      const double power = dot(force, velocity);
+      double powers = 0.0;
+      for (int k = 0; k < 4; ++k) powers += group.from(k, power) + group.from(k + 4, power);
+      if (may_begin) note_begun(is_new, -dt * powers, kept, sum);
+    }
+    if (meeting && kept.begun > 0.0) {
+      const double share = sum.share_beyond(kept.begun);
+      force = share * force;
+      sum.on_a = share * sum.on_a;
+    }
+    const bool rubs = meeting && sum.rubs(law);
+    if (group.any_of_warp(rubs)) {
+      double share[4];
+      Target::of(x).coordinates(sum.middle(), share);
+      Vec3 rate{};  // of a against b
+      for (int k = 0; k < 4; ++k)
+        rate += group.from(0, share[k]) * vector_from(k, velocity) -
+                group.from(4, share[k]) * vector_from(k + 4, velocity);
+      if (rubs) {
         const Vec3 pull = pull_of(law, dt, rate, sum, kept);
         const double mine =
             corner < 2 ? (corner == 0 ? share[0] : share[1]) : (corner == 2 ? share[2] : share[3]);
@@ -90,14 +101,16 @@ struct CouplesWide {
           force -= mine * pull;
       }
     }
-    if (!sum.touches() && resting) return;
+    works = works && (sum.touches() || !resting);
+    if (!group.any_of_warp(works)) return;
     Vec3& stored = (of_a ? all.force[c].on_a : all.force[c].on_b).at[corner];
     const double taken = 0.5 * dt * dot(stored + force, velocity);
-    stored = force;
     for (int k = 0; k < 4; ++k) {
       kept.work -= group.from(k, taken);
       kept.work -= group.from(k + 4, taken);
     }
+    if (!works) return;
+    stored = force;
     end_step(sum.touches(), kept);
     if (lane == 0) all.state[c] = kept;  // all have read it
   }
@@ -109,20 +122,25 @@ struct CouplesWide {
     return face_reaches_into(target, lambda);
   }
   /// CoupleForces::press.
+  /// @param presses  whether the own couple does
   BR_HD static void press(const LaneGroup<width>& group, const Vec3 (&x)[4],
                           const CornersInside& in_target, const Target& target, int lane,
-                          bool exposed, double penalty, bool holds, Pressing& sum, Vec3& force) {
+                          bool exposed, double penalty, bool presses, bool holds, Pressing& sum,
+                          Vec3& force) {
     const bool of_a = lane < 4;
     const int corner = of_a ? lane : lane - 4;
     FacePart mine{};
-    const unsigned inside = group.ballot(
-        part_of_face(x, in_target, corner, exposed, target, Inside(target), penalty, of_a, mine));
+    const unsigned inside =
+        group.ballot(presses && part_of_face(x, in_target, corner, exposed, target, Inside(target),
+                                             penalty, of_a, mine));
     Target of_own = Target::of(x);
     of_own.measure_heights();
     Inside in_own(of_own);
     for (int s = 0; s < width; ++s) {
-      if ((inside >> s & 1U) == 0) continue;
+      const bool is_inside = (inside >> s & 1U) != 0;
+      if (!group.any_of_warp(is_inside)) continue;
       const FacePart part = part_from(group, s, mine);
+      if (!is_inside) continue;
       const bool own_face = (s < 4) == of_a;
       const int face = s < 4 ? s : s - 4;
       sum.add(part, s < 4);
@@ -135,18 +153,21 @@ struct CouplesWide {
       for (int k = 0; k < 3; ++k)
         if (own_face && corner_of_face(face, k) == corner) force += part.on_face[k];
     }
-    if (!holds && !sum.touches()) {
+    const bool acts = presses && (holds || sum.touches());
+    if (!acts) {
       sum = {};
       force = {};
-      return;
     }
+    if (!group.any_of_warp(acts)) return;
+    const double own_energy = in_own.energy(penalty);
+    const double energy = group.from(0, own_energy) + group.from(4, own_energy);
+    if (!acts) return;
+    sum.energy = energy;
     Vec3 of_shape[4];
     for (int k = 0; k < 4; ++k) of_shape[k] = k == corner ? force : Vec3{};
     in_own.add_shape_forces(of_own, penalty, of_shape);
     for (int k = 0; k < 4; ++k)
       if (k == corner) force = of_shape[k];
-    const double energy = in_own.energy(penalty);
-    sum.energy = group.from(0, energy) + group.from(4, energy);
   }
   BR_HD static FacePart part_from(const LaneGroup<width>& group, int s, const FacePart& mine) {
     FacePart part;
