@@ -13,7 +13,8 @@ namespace breccia::app {
 inline void add_damping(CLI::App& command, std::optional<double>& damping) {
   command
       .add_option("--damping", damping,
-                  "local damping of specimens of concrete by links; default: 0.3, of beams 0.05")
+                  "local damping of specimens of concrete by links; default: 0.3, of beams 0.05; "
+                  "none with link_damping")
       ->type_name("SHARE")
       ->check(CLI::Range(0.0, 0.95));
 }

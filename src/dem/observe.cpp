@@ -296,15 +296,9 @@ Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Eleme
   const ElementState& a = elements.state.data()[links.a.data()[i]];
   const ElementState& b = elements.state.data()[links.b.data()[i]];
   const double touching = a.radius + b.radius;
-  const double opening = link_opening(links, i);
-  const LinkConstants<double> link = links.constants(law, i, opening, touching);
-  const Vec3 d = b.position - a.position;
-  const double distance = norm(d);
-  const double pull = law.normal_force(link, distance - link.length, opening) / distance;
-  const Vec3 shear = with_number(links.precision, [&](auto number) {
-    return links.kept.as<decltype(number)>().shear.view()[i];
-  });
-  return shear - pull * d;
+  const LinkState<double> state = links.state_of(law, i);
+  const LinkConstants<double> link = links.constants(law, i, state.opening, touching);
+  return law.force_on_b(link, b.position - a.position, state);
 }
 
 }  // namespace breccia::dem

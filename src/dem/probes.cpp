@@ -101,17 +101,18 @@ struct ConcreteStress {
   View<const double> length, stiffness, area, rate;
   View<const Number> opening;
   PlanesView<const Number> shear;
+  View<const float> branch_normal;
+  PlanesView<const float> branch_shear;
 
   BR_HD ExactSum operator()(Index k) const {
     const Index i = first + k;
     const ElementState &s = state[a[i]], &t = state[b[i]];
     const double touching = s.radius + t.radius;
     LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
-    const Vec3 d = t.position - s.position;
-    const double distance = norm(d), largest = opening[i];
-    if (law.rated()) link.factor = law.factor_of(link, largest, rate[i]);
-    const double pull = law.normal_force(link, distance - length[i], largest) / distance;
-    const Vec3 on_b = Vec3(shear[i]) - pull * d;
+    LinkState<double> kept{opening[i], shear[i], {}};
+    if (law.rated()) link.factor = law.factor_of<double>(link, kept.opening, rate[i]);
+    if (law.damps()) kept.branch = {branch_normal[i], branch_shear[i]};
+    const Vec3 on_b = law.force_on_b(link, t.position - s.position, kept);
     return ExactSum(branch(s.position, t.position, on_b));
   }
 };
@@ -157,7 +158,8 @@ ExactSum link_stress(const World& w, const LinkSet<Law>& set, const BranchStress
             w.exec, w.domain, g.end - g.begin, ExactSum(),
             ConcreteStress<Number>{branch, g.law, g.begin, state, set.a.view(), set.b.view(),
                                    set.length.view(), set.stiffness.view(), set.area.view(),
-                                   set.rate.view(), kept.opening.view(), kept.shear.view()},
+                                   set.rate.view(), kept.opening.view(), kept.shear.view(),
+                                   set.branch_normal.view(), set.branch_shear.view()},
             Sum{}, ListedElement<>{set.a.view(), g.begin}));
     });
   } else {

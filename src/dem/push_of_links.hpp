@@ -31,18 +31,14 @@ BR_HD Vec3 force_now(const ConcreteLinkForces<Number>& of, Index i, const LinkEn
                              a.radius + b.radius};
   if (of.law.rated())
     link.factor = of.law.template factor_of<double>(link, of.opening[i], of.rate[i]);
-  const Vec3 way = b.motion.position - a.motion.position;
-  const double distance = norm(way);
-  const double normal = of.law.normal_force(link, distance - link.length, of.opening[i]);
-  return of.shear[i] - (normal / distance) * way;
+  return of.law.force_on_b(link, b.motion.position - a.motion.position, of.state_of(i));
 }
 template <class Number>
 BR_HD Vec3 force_next(const ConcreteLinkForces<Number>& of, Index i, const LinkEnd<double>& a,
                       const LinkEnd<double>& b, double dt) {
   const LinkConstants<double> link{of.length[i], of.stiffness[i], of.area[i],
                                    0.5 * (a.radius + b.radius), a.radius + b.radius};
-  LinkState<double> state{of.opening[i], of.shear[i], of.moment[i]};
-  if (of.law.rated()) state.rate = of.rate[i];
+  LinkState<double> state = of.state_of(i);
   const PairMotion<double> motion =
       pair_motion<double>(a.motion, b.motion, a.radius - b.radius, dt);
   const LinkResponse<double> r = of.law.response(link, motion, state);

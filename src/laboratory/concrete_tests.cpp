@@ -274,6 +274,7 @@ Sample sample_of(const dem::Config& config, const std::string& material) {
                     "tested; nothing was run",
                     material, found->law));
   sample.material = *found;
+  if (found->link_damping > 0.0) sample.damping = 0.0;
   sample.contact = config.contact;
   for (const dem::BodyConfig& body : config.bodies)
     if (body.material == material && (body.pack.count > 0 || !body.pack.sieves.empty())) {

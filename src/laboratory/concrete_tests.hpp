@@ -18,7 +18,7 @@ struct Sample {
   dem::ContactConfig contact;
   double size_ratio = 2.0, compactness = 0.56;  ///< of the packing  [-]
   double range = 1.443;                         ///< interaction range  [-]
-  double damping = 0.3;                         ///< local damping; beams take 0.05 at most  [-]
+  double damping = 0.3;  ///< local damping, none of damped links; beams take 0.05 at most  [-]
   /// Of the prism, and of the disc if it is fewest_in_disc or more; the others have as large ones
   /// as the prism.  [-]
   int elements = 1200;

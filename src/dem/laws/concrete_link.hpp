@@ -1,7 +1,9 @@
 #pragma once
 // The cohesive link of concrete: modified Mohr-Coulomb with softening and moment transfer.
 
+#include "dem/laws/carried_force.hpp"
 #include "dem/laws/concrete_parts.hpp"
+#include "dem/laws/damping_branch.hpp"
 #include "dem/laws/link_state.hpp"
 #include "dem/laws/rate_curve.hpp"
 #include "dem/laws/tension_softening.hpp"
@@ -59,6 +61,7 @@ struct ConcreteLinkOf {
   N closing_strain;        ///< p_c at which D_eq shortens no further, 0: none  [-]
   RateCurve rate;          ///< of T
   SofteningKnee knee;      ///< of the falling branch in tension
+  DampingBranch damping;
 
   /// With constants rounded to another type.
   template <class Other>
@@ -88,7 +91,8 @@ struct ConcreteLinkOf {
             to(crushing_slope),
             to(closing_strain),
             rate,
-            knee};
+            knee,
+            damping};
   }
 
   /// One step of a link (R = double) or of a pack of links.
@@ -112,13 +116,19 @@ struct ConcreteLinkOf {
   BR_HD bool rated() const {
     return (parts & concrete_rated) != 0 && is_given(rate.exponent);
   }
+  /// Whether links are damped.
+  template <ConcreteParts parts = concrete_all>
+  BR_HD bool damps() const {
+    return (parts & concrete_damps) != 0 && damping.acts();
+  }
   /// Parts that this law has.
   ConcreteParts parts() const {
     return (compacts<concrete_all>() ? concrete_compacts : 0) | (wears() ? concrete_wears : 0) |
            (is_given(friction_cap) ? concrete_caps_friction : 0) |
            (is_given(rolling_cap) ? concrete_caps_rolling : 0) |
            (is_given(hyperbolic) ? concrete_is_hyperbolic : 0) |
-           (knee.bends() ? concrete_knee : 0) | (rated() ? concrete_rated : 0);
+           (knee.bends() ? concrete_knee : 0) | (rated() ? concrete_rated : 0) |
+           (damps() ? concrete_damps : 0);
   }
 
   template <class R>
@@ -154,6 +164,15 @@ struct ConcreteLinkOf {
     if (stretch < 0.0) return elastic;
     return opening >= 0.0 ? (1.0 - damage(link, opening)) * elastic : 0.0;
   }
+  /// Force on b, at the end of a way, as a link stands.  [N]
+  BR_HD Vec3 force_on_b(const LinkConstants<double>& link, const Vec3& way,
+                        const LinkState<double>& state) const {
+    const double distance = norm(way);
+    const double normal = normal_force(link, distance - link.length, state.opening);
+    if (!damps()) return state.shear - (normal / distance) * way;
+    const BranchForce<double>& branch = state.branch;
+    return state.shear + branch.shear - ((normal + branch.normal) / distance) * way;
+  }
   /// Energy a link stores at a stretch u.  [J]
   BR_HD double stored(const LinkConstants<double>& link, double stretch,
                       const LinkState<double>& state) const {
@@ -168,6 +187,7 @@ struct ConcreteLinkOf {
       energy = 0.5 * kn * (1.0 - damage(link, state.opening)) * stretch * stretch;
     if (kt > 0.0) energy += dot(state.shear, state.shear) / (2.0 * kt);
     if (kr > 0.0) energy += dot(state.moment, state.moment) / (2.0 * kr);
+    if (damps()) energy += damping.stored(link, kt, state.branch);
     return energy;
   }
 
@@ -188,19 +208,6 @@ struct ConcreteLinkOf {
     R shortened;  ///< by compaction  [m]
     R crushed;    ///< energy that compaction spent  [J]
   };
-  /// A shear force or moment, carried to where the pair is, and with this step's increment.
-  template <class R>
-  struct Carried {
-    Vec3Of<R> before, trial;
-  };
-  /// A shear force or moment after its limit.
-  template <class R>
-  struct Cut {
-    Vec3Of<R> kept;
-    R spent;    ///< [J]
-    R plastic;  ///< slip, or turn, beyond the elastic one  [m or rad]
-  };
-
   template <ConcreteParts parts>
   BR_HD bool compacts() const {
     return (parts & concrete_compacts) != 0 &&
@@ -267,32 +274,9 @@ struct ConcreteLinkOf {
     state.opening = select(s.parted, constant<R>(link_released), state.opening);
     state.shear = r.shear;
     state.moment = r.moment;
+    r.damped = zero;
+    if (damps<parts>()) damp(s, survives, acts, link, kt, motion, state, r);
     return r;
-  }
-
-  /// In single precision all that changes in a step is added at one go, and rounded by chance.
-  template <class R>
-  BR_HD static Carried<R> carried_shear(const LinkConstants<R>& link, const PairMotion<R>& motion,
-                                        const Vec3Of<R>& kept, const R& kt) {
-    if constexpr (is_single<R>) {
-      const Vec3Of<R> turned = motion.change_with_pair(kept);
-      const Vec3Of<R> change = turned - dot(kept + turned, motion.normal) * motion.normal;
-      return {kept + change, sum_by(link.chance, 0, kept, change - kt * motion.slip)};
-    } else {
-      const Vec3Of<R> before = motion.tangential(motion.rotated_with_pair(kept));
-      return {before, before - kt * motion.slip};
-    }
-  }
-  template <class R>
-  BR_HD static Carried<R> carried_moment(const LinkConstants<R>& link, const PairMotion<R>& motion,
-                                         const Vec3Of<R>& kept, const R& kr) {
-    if constexpr (is_single<R>) {
-      const Vec3Of<R> change = motion.change_with_pair(kept);
-      return {kept + change, sum_by(link.chance, 16, kept, change - kr * motion.turn)};
-    } else {
-      const Vec3Of<R> before = motion.rotated_with_pair(kept);
-      return {before, before - kr * motion.turn};
-    }
   }
 
   /// The strength of this step by the strain rate: e' = (e + dD/(D tau)) / (1 + dt/tau), held from
@@ -426,30 +410,6 @@ struct ConcreteLinkOf {
     return eta * link.radius * force;
   }
 
-  /// Cuts a trial force or moment back to its limit, to nothing where the link does not act.
-  template <class R>
-  BR_HD static Cut<R> cut(const Vec3Of<R>& before, const Vec3Of<R>& trial, const R& limit,
-                          const typename Stand<R>::Truth& acts, const R& stiffness) {
-    const R zero = constant<R>(0.0), one = constant<R>(1.0);
-    Cut<R> c{trial, zero, zero};
-    const R squared = dot(trial, trial);
-    const auto beyond = squared > limit * limit || !acts;
-    if (!any(beyond)) return c;
-    // A link without load before and after keeps nothing: no root, no division.
-    const auto idle = !acts && before.x == 0.0 && before.y == 0.0 && before.z == 0.0;
-    if (!any(beyond && !idle)) {
-      c.kept = select(beyond, zero * trial, trial);
-      return c;
-    }
-    const R size = sqrt(squared);
-    const R scale = select(acts, limit / select(size > zero, size, one), zero);
-    c.kept = select(beyond, scale * trial, trial);
-    const R per_stiffness = constant<R>(0.5) / select(stiffness > zero, stiffness, one);
-    c.spent = per_stiffness * dot(before + c.kept, trial - c.kept);
-    c.plastic = select(beyond, 2.0 * per_stiffness * (size - scale * size), zero);
-    return c;
-  }
-
   /// Wear opens a link, until it is torn in the next step. It spends nothing of its own: sliding
   /// and rolling have been booked, so that `broke` takes back what the ledger reads off the opening
   /// (TensionSoftening::spent), but for what a stretched link stored.
@@ -476,6 +436,26 @@ struct ConcreteLinkOf {
   BR_HD static R opened_by(const LinkConstants<R>& link, const R& opening, const R& wear) {
     if constexpr (is_single<R>) return sum_by(link.chance, 29, opening, wear);
     return opening + wear;
+  }
+
+  /// The branch beside the springs. A link that has softened is without it while it is stretched,
+  /// so that cracks open freely; a broken one that is pressed has the part along the normal,
+  /// without attraction.
+  template <class R, class Truth>
+  BR_HD void damp(const Stand<R>& s, const Truth& survives, const Truth& acts,
+                  const LinkConstants<R>& link, const R& kt, const PairMotion<R>& motion,
+                  LinkState<R>& state, LinkResponse<R>& r) const {
+    const R zero = constant<R>(0.0), one = constant<R>(1.0);
+    const BranchForce<R> trial = damping.moved(link, kt, motion, state.branch);
+    const auto whole = survives && (s.pressed || s.health >= one);
+    const R push = select(acts && !survives, min(trial.normal, -1.0 * r.normal), zero);
+    const BranchForce<R> force{select(whole, trial.normal, push),
+                               select(whole, one, zero) * trial.shear};
+    r.damped = damping.taken(link, kt, motion, state.branch, force);
+    r.normal = r.normal + force.normal;
+    r.shear = r.shear + force.shear;
+    r.active = (1.0 + damping.share) * r.active;
+    state.branch = force;
   }
 
   template <ConcreteParts parts, class R>

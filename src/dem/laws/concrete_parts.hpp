@@ -11,7 +11,7 @@ using ConcreteParts = unsigned;
 inline constexpr ConcreteParts concrete_compacts = 1, concrete_wears = 2,
                                concrete_caps_friction = 4, concrete_caps_rolling = 8,
                                concrete_is_hyperbolic = 16, concrete_knee = 32, concrete_rated = 64,
-                               concrete_all = 127;
+                               concrete_damps = 128, concrete_all = 255;
 /// Parts of concrete with bounds under pressure (docs/theory.md, concrete under pressure).
 inline constexpr ConcreteParts concrete_bounded =
     concrete_compacts | concrete_wears | concrete_caps_rolling;

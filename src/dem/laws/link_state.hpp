@@ -6,6 +6,13 @@
 
 namespace breccia::dem {
 
+/// What the damping branch of a link bears.
+template <class R>
+struct BranchForce {
+  R normal;         ///< tension positive  [N]
+  Vec3Of<R> shear;  ///< on b, world frame  [N]
+};
+
 /// State of a link, kept from step to step.
 template <class R>
 struct LinkState {
@@ -13,6 +20,7 @@ struct LinkState {
   Vec3Of<R> shear;   ///< F_s on b, world frame  [N]
   Vec3Of<R> moment;  ///< M on b, world frame  [N m]
   R rate = {};  ///< smoothed strain rate [1/s]; minus DIF [-] from the peak on; rated laws only
+  BranchForce<R> branch = {};  ///< damped laws only
 };
 inline constexpr double link_broken =
     -1.0;  ///< LinkState::opening of a link that answers as a contact
@@ -29,6 +37,7 @@ struct LinkResponse {
   R slid;            ///< energy spent on sliding in this step  [J]
   R yielded;         ///< energy spent on plastic moments and compaction in this step  [J]
   R broke;           ///< energy spent on rupture in this step, and what wear corrects of it  [J]
+  R damped;          ///< energy that the damping branch took in this step  [J]
 };
 
 /// Constants of one link.

@@ -51,6 +51,11 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
   Buffer<double> broke;    ///< energy that its rupture spent  [J]  (pairs)
   bool rated = false;  ///< whether the strength of some link depends on its strain rate  (constant)
   Buffer<double> rate;  ///< LinkState::rate; empty if not rated  [1/s or -]
+  bool damped = false;  ///< whether some link has a damping branch; otherwise the next three are
+                        ///< empty  (constant)
+  Buffer<float> branch_normal;  ///< LinkState::branch; it fades, so that few digits do  [N] (pairs)
+  PlanesOf<float> branch_shear;  ///< likewise  [N]  (pairs)
+  Buffer<double> damped_away;    ///< energy that the branch has taken so far  [J]  (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -68,6 +73,20 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
     field("yielded", "J", yielded);
     field("broke", "J", broke);
     if (rated) field("rate", "1/s", rate);
+    if (!damped) return;
+    field("branch_normal", "N", branch_normal);
+    field("branch_shear", "N", branch_shear);
+    field("damped_away", "J", damped_away);
+  }
+  /// What a link keeps. All arrays on the host.
+  LinkState<double> state_of(const ConcreteLink& law, Index i) const {
+    return with_number(precision, [&](auto number) {
+      const auto& history = kept.as<decltype(number)>();
+      LinkState<double> state{history.opening.data()[i], history.shear.view()[i],
+                              history.moment.view()[i]};
+      if (law.damps()) state.branch = {branch_normal.data()[i], branch_shear.view()[i]};
+      return state;
+    });
   }
   /// Constants of a link as it stands. All arrays on the host.
   LinkConstants<double> constants(const ConcreteLink& law, Index i, double opening,
@@ -116,6 +135,9 @@ struct ConcreteLinkForces {
   View<Stores> opening;
   PlanesView<Stores> shear, moment;
   View<double> slid, yielded, broke, rate;
+  View<float> branch_normal;
+  PlanesView<float> branch_shear;
+  View<double> damped_away;
   Actions actions;
   Index first_action;  ///< action of link 0
   std::int64_t step;   ///< steps taken before
@@ -155,6 +177,8 @@ struct ConcreteLinkForces {
     const LinkConstants<R> link = constants(loaded, motion, loaded.ends.touching());
     LinkState<R> state = loaded.state;
     if (by.template rated<parts>()) state.rate = load<R>(rate, i);
+    if (by.template damps<parts>())
+      state.branch = {load<R>(branch_normal, i), load<R>(branch_shear, i)};
     const LinkResponse<R> r = by.template response<parts>(link, motion, state);
 
     if constexpr (std::is_same_v<Number, float>) {
@@ -167,6 +191,11 @@ struct ConcreteLinkForces {
     store(shear, i, state.shear);
     store(moment, i, state.moment);
     if (by.template rated<parts>()) store(rate, i, state.rate);
+    if (by.template damps<parts>()) {
+      store(branch_normal, i, state.branch.normal);
+      store(branch_shear, i, state.branch.shear);
+      if (any(r.damped != 0.0)) book(actions, damped_away, i, r.damped);
+    }
     if (any(r.shortened != 0.0)) add_to(length, i, -r.shortened);
     if (any(r.slid != 0.0)) book(actions, slid, i, r.slid);
     if (any(r.yielded != 0.0)) book(actions, yielded, i, r.yielded);
@@ -176,6 +205,13 @@ struct ConcreteLinkForces {
     const R kr = by.rolling_ratio * kt * link.radius * link.radius;
     write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
                      r.moment, kn, kt, kr, kr);
+  }
+  /// What a link keeps.
+  BR_HD LinkState<double> state_of(Index i) const {
+    LinkState<double> state{opening[i], shear[i], moment[i]};
+    if (law.rated()) state.rate = rate[i];
+    if (law.damps()) state.branch = {branch_normal[i], branch_shear[i]};
+    return state;
   }
   BR_HD void set(const StepTime& now) {
     dt = now.last_dt;
@@ -218,6 +254,9 @@ ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, 
           c.yielded.view(),
           c.broke.view(),
           c.rate.view(),
+          c.branch_normal.view(),
+          c.branch_shear.view(),
+          c.damped_away.view(),
           actions.view(),
           0,
           in.step};
@@ -232,13 +271,20 @@ struct ConcreteShares {
   View<const Number> opening;
   PlanesView<const Number> shear, moment;
   View<const double> slid, yielded, broke, rate;
+  View<const float> branch_normal;
+  PlanesView<const float> branch_shear;
+  View<const double> damped_away;
 
   BR_HD void add_to(Energies& s, const ConcreteLink& law, Index i) const {
     const double touching = state_of[a[i]].radius + state_of[b[i]].radius;
     LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
     if (law.rated()) link.factor = law.factor_of<double>(link, opening[i], rate[i]);
     const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
-    const LinkState<double> state{opening[i], shear[i], moment[i]};
+    LinkState<double> state{opening[i], shear[i], moment[i]};
+    if (law.damps()) {
+      state.branch = {branch_normal[i], branch_shear[i]};
+      s.damping.add(damped_away[i]);
+    }
     s.elastic.add(law.stored(link, stretch, state));
     s.fracture.add(broke[i]);
     if (state.opening >= 0.0) s.fracture.add(law.spent(link, state.opening));
@@ -262,7 +308,10 @@ ConcreteShares<Number> shares_of(const ConcreteLinks& c, const View<const Elemen
           c.slid.view(),
           c.yielded.view(),
           c.broke.view(),
-          c.rate.view()};
+          c.rate.view(),
+          c.branch_normal.view(),
+          c.branch_shear.view(),
+          c.damped_away.view()};
 }
 
 /// How far a link has gone. All arrays on the host.

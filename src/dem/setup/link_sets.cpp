@@ -147,9 +147,18 @@ void weaken(ConcreteLink& law, double by) {
 }
 
 void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m, int threads) {
-  for (const MaterialConfig& c : config.materials)
-    set.rated = set.rated || (c.law == "concrete" && c.rate != "none");
-  if (set.rated) move_array(set.rate, set.length.space());  // place_arrays() left it out
+  for (const MaterialConfig& c : config.materials) {
+    if (c.law != "concrete") continue;
+    set.rated = set.rated || c.rate != "none";
+    set.damped = set.damped || c.link_damping > 0.0;
+  }
+  // place_arrays() left them out
+  if (set.rated) move_array(set.rate, set.length.space());
+  if (set.damped) {
+    move_array(set.branch_normal, set.length.space());
+    move_array(set.branch_shear, set.length.space());
+    move_array(set.damped_away, set.length.space());
+  }
   const LinksOf links =
       grouped(m, config, threads, set, [&](const MaterialConfig& c, const Model::Link& link) {
         ConcreteLink law = concrete_law(c, config.contact);

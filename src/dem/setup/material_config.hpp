@@ -145,6 +145,8 @@ struct MaterialConfig {
   double crushing_strength = 0.0;           ///< Y_b; 0: none  [Pa]
   double crushing_slope = 0.4;              ///< H_b  [-]
   double closing_strain = 0.0;              ///< p_c; 0: none  [-]
+  double link_damping = 0.0;                ///< m; 0: none  [-]
+  double link_damping_time = 0.2;           ///< tau over D / c  [-]
   std::string rate = "none";
   double rate_strength = 30e6;                    ///< f_c, static, of malvar_ross  [Pa]
   double rate_crossings = 5.0;                    ///< time constant over D / c  [-]
@@ -235,6 +237,12 @@ struct MaterialConfig {
     key("closing_strain", closing_strain, "-", Range{0.0, 1.0, Open::high},
         "p_c, share of its length by which compaction and crushing shorten a link until its pores "
         "are closed and it is elastic again; 0: they are never closed");
+    key("link_damping", link_damping, "-", Range{0.0, 100.0},
+        "m, stiffness of the damping branch of a link (a spring in line with a dashpot) over that "
+        "of the link; 0: none");
+    key("link_damping_time", link_damping_time, "-", Range{0.01, 100.0},
+        "time in which the damping branch relaxes, in crossings of the link by a wave of speed "
+        "sqrt(young / density)");
     key("rate", rate, OneOf{"none", "malvar_ross", "mc2010"},
         "how the tensile strength of a link grows with its own strain rate: none; malvar_ross: by "
         "Malvar and Ross 1998; mc2010: by the fib Model Code 2010; a quasi-static test in a few ms "

@@ -83,6 +83,10 @@ RateCurve rate_curve(const MaterialConfig& m) {
   return {exponent, bend, std::sqrt(m.young / m.density) / m.rate_crossings};
 }
 
+DampingBranch damping_branch(const MaterialConfig& m) {
+  return {m.link_damping, std::sqrt(m.young / m.density) / m.link_damping_time};
+}
+
 SofteningKnee softening_knee(const MaterialConfig& m) {
   if (m.knee_strength == 0.0) return {};
   const double s = m.knee_strength, x = m.knee_opening;
@@ -115,6 +119,7 @@ ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact)
   law.crushing_strength = m.crushing_strength;
   law.crushing_slope = m.crushing_slope;
   law.closing_strain = m.closing_strain;
+  law.damping = damping_branch(m);
   law.rate = rate_curve(m);
   law.knee = softening_knee(m);
   return law;

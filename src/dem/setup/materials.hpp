@@ -44,6 +44,8 @@ double link_stiffness(const Model& model, const Model::Link& link, const Materia
 
 /// Tensile strength over strain rate; of "none" with the exponent 0.
 RateCurve rate_curve(const MaterialConfig& material);
+/// With the share 0 where links are not damped.
+DampingBranch damping_branch(const MaterialConfig& material);
 /// The bend of the falling branch; none of a straight one.
 SofteningKnee softening_knee(const MaterialConfig& material);
 ConcreteLink concrete_law(const MaterialConfig& material, const ContactConfig& contact);

@@ -265,11 +265,12 @@ void tell_undamped(const Config& config, std::vector<std::string>& warnings) {
   constexpr double little = 0.05;
   if (config.local_damping >= little) return;
   for (const MaterialConfig& m : config.materials)
-    if (m.law == "concrete" && !m.use.empty())
+    if (m.law == "concrete" && !m.use.empty() && m.link_damping == 0.0)
       warnings.push_back(fmt::format(
           "material.{}: {} was found with local_damping = 0.3, and this case has {}. Without any, "
           "C30 has 29 to 33 % less compressive strength and 6 to 7 % less tensile strength "
-          "(docs/theory.md, 3); 'breccia calibrate' with --damping finds numbers for it",
+          "(docs/theory.md, 3); 'breccia calibrate' with --damping or with link_damping finds "
+          "numbers for it",
           m.name, m.use, config.local_damping));
 }
 

@@ -172,6 +172,7 @@ namespace {
 void set_modulus(LinkGroup<ConcreteLink>& group, const MaterialConfig& m) {
   group.law.modulus = local_elasticity(m).modulus * group.bulk;
   group.law.rate = rate_curve(m);
+  group.law.damping = damping_branch(m);
 }
 void set_modulus(LinkGroup<ParallelBond>&, const MaterialConfig&) {}
 

@@ -56,6 +56,9 @@ struct TileContent {
       all.concrete.opening[g] = memory.opening[l];
       all.concrete.shear.store(g, shear()[l]);
       all.concrete.moment.store(g, moment()[l]);
+      if (!all.tiles.groups.damped) continue;
+      all.concrete.branch_normal[g] = memory.branch_normal[l];
+      all.concrete.branch_shear.store(g, branch_shear()[l]);
     }
     for (Index l = thread; l < tile.steel; l += threads)
       if (is_own(memory.steel[l]))
@@ -103,6 +106,9 @@ struct TileContent {
   }
   BR_HD PlanesView<Stores> moment() const {
     return {seen(memory.moment, 3 * tile.concrete), tile.concrete};
+  }
+  BR_HD PlanesView<float> branch_shear() const {
+    return {seen(memory.branch_shear, 3 * tile.concrete), tile.concrete};
   }
   /// The action of a contact that has one in this step.
   BR_HD PairForce* action_of(Index k) const {
@@ -171,6 +177,9 @@ struct TileContent {
       memory.opening[l] = opening;
       shear().store(l, shear_force);
       moment().store(l, bending);
+      if (!all.tiles.groups.damped) continue;
+      memory.branch_normal[l] = all.concrete.branch_normal[g];
+      branch_shear().store(l, all.concrete.branch_shear[g]);
     }
     for (Index l = thread; l < tile.steel; l += threads) {
       const TileLink link = t.links[tile.first_link + tile.concrete + l];

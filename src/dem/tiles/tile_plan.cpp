@@ -303,7 +303,7 @@ class Sharing {
     copy_to(from_.bar_entries, w.bar_incidence.entries);
     plan_->groups = {static_cast<Index>(w.concrete.groups.size()),
                      static_cast<Index>(w.steel.groups.size()),
-                     static_cast<Index>(w.interface.groups.size())};
+                     static_cast<Index>(w.interface.groups.size()), w.concrete.damped};
   }
 
   std::unique_ptr<TilePlan> plan() {

@@ -60,6 +60,7 @@ struct Tile {
 /// Groups of links by kind: each has a law.
 struct TileGroups {
   Index concrete, steel, interface;
+  bool damped;  ///< whether concrete links have damping branches
 };
 
 /// Torque on and force on an element.
@@ -117,6 +118,7 @@ struct TileMemory {
   Placed<double> length;  ///< of concrete links, and what follows
   Placed<Constant> stiffness, area;
   Placed<Stores> opening, shear, moment;
+  Placed<float> branch_normal, branch_shear;  ///< empty without damping branches
   Placed<double> bar_length;
   Placed<SteelState> bar_state;
   Placed<TileAxis> axis;
@@ -209,6 +211,9 @@ BR_HD std::size_t TileMemory<Number>::lay_out(const Tile& of, const TileGroups& 
   pieces.take(opening, tile.concrete);
   pieces.take(shear, 3 * tile.concrete);
   pieces.take(moment, 3 * tile.concrete);
+  const Index damped = groups.damped ? tile.concrete : 0;
+  pieces.take(branch_normal, damped);
+  pieces.take(branch_shear, 3 * damped);
   pieces.take(steel, bars);
   pieces.take(bar_length, bars);
   pieces.take(bar_state, bars);

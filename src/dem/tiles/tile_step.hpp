@@ -235,6 +235,9 @@ struct TileStep : TileContent<Number> {
                         all.concrete.yielded,
                         all.concrete.broke,
                         {},
+                        this->seen(memory.branch_normal, n),
+                        this->branch_shear(),
+                        all.concrete.damped_away,
                         actions(memory.actions.data(), link),
                         0,
                         now.step};

@@ -47,7 +47,7 @@ class NotchedCube {
     config_.materials[0].fracture_energy = 0.0;
     config_.materials[0].rate = "none";  // a quasi-static test
     config_.contact = contact;
-    config_.local_damping = 0.3;
+    config_.local_damping = material.link_damping > 0.0 ? 0.0 : 0.3;
     config_.links.range = packed.range;
     dem::BodyConfig body;
     body.name = "cube";

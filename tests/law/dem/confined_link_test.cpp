@@ -59,7 +59,8 @@ std::vector<ConcretePart> concrete_part_list() {
            [](ConcreteLink& l) {
              l.knee = {1.0, 1.0, 0.5};
            }},
-          {concrete_rated, [](ConcreteLink& l) { l.rate.exponent = 0.02; }}};
+          {concrete_rated, [](ConcreteLink& l) { l.rate.exponent = 0.02; }},
+          {concrete_damps, [](ConcreteLink& l) { l.damping.share = 0.1; }}};
 }
 
 /// A link whose ends are moved, with the work done on it and the energy it has spent.

@@ -9,10 +9,11 @@ namespace library_damping_test {
 
 using testing::Scene;
 
-std::vector<std::string> told(const std::string& use, double damping) {
+std::vector<std::string> told(const std::string& use, double damping, double of_links = 0.0) {
   Scene s;
   s.material("c", "concrete", 30e9, 0.2, 2500.0);
   s.config.materials.back().use = use;
+  s.config.materials.back().link_damping = of_links;
   s.config.local_damping = damping;
   s.sphere({0.0, 0.0, 0.0}, 0.01);
   s.sphere({0.02, 0.0, 0.0}, 0.01);
@@ -30,6 +31,7 @@ TEST(LibraryDamping, is_told_of_where_a_case_runs_without_any) {
 }
 
 TEST(LibraryDamping, is_not_told_of_with_damping_or_of_a_material_of_ones_own) {
+  EXPECT_TRUE(told("C30", 0.0, 0.3).empty());
   EXPECT_TRUE(told("C30", 0.3).empty());
   EXPECT_TRUE(told("C30", 0.05).empty());
   EXPECT_TRUE(told("", 0.0).empty());

@@ -101,6 +101,9 @@ TEST(Specimens, AreOfTheCasesMaterialPackingAndRange) {
   EXPECT_EQ(sample.size_ratio, 1.5);
   EXPECT_EQ(sample.compactness, 0.6);
   EXPECT_EQ(sample.range, 1.3);
+  EXPECT_EQ(sample.damping, 0.3);
+  c.materials[0].link_damping = 0.3;
+  EXPECT_EQ(sample_of(c, "c").damping, 0.0);
   EXPECT_THROW(sample_of(c, "d"), InputError);
   c.materials[0].law = "steel";
   EXPECT_THROW(sample_of(c, "c"), InputError);
