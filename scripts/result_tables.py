@@ -15,6 +15,7 @@ import statistics
 import sys
 
 import concrete_tables
+import damped_links
 import impact_tables
 import ldpm_tables
 import library_tables
@@ -121,6 +122,7 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "rocks": lambda which: rock_library.recovery_table(lines_of("rocks"), which),
           "misfits": lambda _: misfit_table.markdown(lambda name, what: MAKERS[name](what)),
           "localisation": lambda _: localisation.markdown(lines_of("localisation")),
+          "damping": lambda _: damped_links.table(lines_of("damping")),
           "grips": lambda which: localisation.pulled_table(lines_of("grips"), which)}
 
 
