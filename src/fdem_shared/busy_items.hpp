@@ -4,8 +4,8 @@
 // waits for those of them that are.
 //
 // A launch of ListBusy looks at all items: it finishes those with little to do, couples at rest
-// apart and joints that stay whole, and lists the others. A launch of BusyWide, BusyWhereDue or
-// BusyAlone evaluates the list; the sums of forces empty it (EmptiesLists). The order of the list
+// apart and joints that stay whole, and lists the others. A launch of BusyWide or BusyWhereDue
+// evaluates the list; the sums of forces empty it (EmptiesLists). The order of the list
 // changes from run to run, but each item writes only its own forces.
 
 #include <algorithm>
@@ -60,15 +60,15 @@ struct ListBusy {
   }
 };
 
-/// Groups of threads that share a list of couples out: whole warps of them.
+/// Groups of threads that share a list of items out: whole warps of them.
 /// @param most  as many as run at a time, and more
 template <class Wide>
-Index groups_of(Index couples, Index most) {
-  return whole_warps(std::min(couples, most) * Wide::width) / Wide::width;
+Index groups_of(Index items, Index most) {
+  return whole_warps(std::min(items, most) * Wide::width) / Wide::width;
 }
 
-/// Busy couples by the threads of `groups` groups, each of which takes every groups-th couple.
-/// @tparam Wide  kernel of all couples by `width` threads each; a couple beyond the last is none
+/// Busy items by the threads of `groups` groups, each of which takes every groups-th one.
+/// @tparam Wide  kernel of all items by `width` threads each; an item beyond the last is none
 template <class Wide>
 struct BusyWide {
   static constexpr const char* name = Wide::name;
@@ -91,8 +91,7 @@ struct BusyWide {
     const LaneGroup<width> group;
     const Index end = count[0];
     for (Index k = i / width; group.any_of_warp(k < end); k += groups) {
-      const Index c = k < end ? busy[k] : wide.items();
-      const Index thread = c * width + i % width;
+      const Index thread = (k < end ? busy[k] : wide.items()) * width + i % width;
       typename Wide::Loaded loaded;
       wide.load_early(thread, loaded);
       wide.load_late(thread, loaded);
@@ -139,23 +138,6 @@ struct BusyWhereDue {
         wide.evaluate(dt, c, static_cast<int>(i % width));
       }
     }
-  }
-};
-
-/// Busy items by `threads` threads, each of which takes every threads-th one by itself.
-template <class Kernel>
-struct BusyAlone {
-  static constexpr const char* name = Kernel::name;
-  Kernel kernel;
-  View<const Index> busy, count;
-  Index threads;
-
-  BR_HD void set(const StepTime& now) { kernel.set(now); }
-  BR_HD void operator()(Index i) const {
-    for (Index k = i; k < count[0]; k += threads) kernel.slow(busy[k]);
-  }
-  BR_HD void update_at(const StepTime& now, Index i) const {
-    for (Index k = i; k < count[0]; k += threads) run_slow(&kernel, now, busy[k]);
   }
 };
 

@@ -146,23 +146,19 @@ struct JointForces {
       for (int q = 0; q < 3; ++q)
         bond_traction[q] = response(bond, strength[i], h, o.open[q] + offset.x,
                                     o.slide[q] + offset.y, state.point[q]);
-    Vec2 traction[3];
     double pressure = 0.0, drag = 0.0;
     int failed = 0;
     bool damaged = false;
     for (int q = 0; q < 3; ++q) {
       const BondTraction<double>& t = bond_traction[q];
-      traction[q] = t.shear * o.along + t.normal * o.normal;
       const double weight = (q == 1 ? -4.0 : -1.0) * h / 6.0;
       pressure += weight * t.normal;
       drag += weight * t.shear;
       failed += state.point[q].damage >= 1.0 ? 1 : 0;
       damaged = damaged || state.point[q].damage > 0.0;
     }
-    const double weight = (-1.0 / 6.0) * h;
     // Work is booked of the forces that act: as they are stored.
-    JointForceOf<Number> now = converted<Number>(JointForce{
-        weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])});
+    JointForceOf<Number> now = converted<Number>(force_of(bond_traction, o, h));
     if (before == JointStage::whole) {
       if (damaged)
         begin_work(i, bond, offset, a0, a1, b0, b1);
@@ -229,6 +225,129 @@ struct JointForces {
   /// Weight of an integration point in a mean.  [-]
   BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
 
+  /// Joints as long as they are whole.
+  template <class R>
+  struct Whole {
+    using Mask = decltype(R{} < R{});
+    R force[4];   ///< on both corners of side a  [N/m]
+    Mask beyond;  ///< it does not stay so: its forces mean nothing
+    Mask drags;   ///< it is, or may have been, pressed and slips enough for book_slips()
+  };
+  /// By which they answer.
+  template <class R>
+  struct ElasticLaw {
+    R bond[12], offset[2];
+    R slope, tension, cohesion, quarter;
+    /// A point of this opening and slip, offset included.
+    template <class Mask>
+    BR_HD BondTraction<R> at(const R& open, const R& slide, Mask& beyond, Mask& drags) const {
+      const BondTraction<R> t =
+          elastic_response(slope, tension, quarter, cohesion, bond[3], open, slide, beyond);
+      // While it is pressed its normal traction is straight; it may have been a step ago.
+      const R resists = cohesion - bond[3] * min(t.normal, constant<R>(0.0));
+      drags = drags || (t.normal < 0.05 * tension && abs(t.shear) > least_drag * resists);
+      return t;
+    }
+  };
+  template <class R>
+  BR_HD ElasticLaw<R> elastic_law(Index i, const Loaded<R>& loaded) const {
+    ElasticLaw<R> elastic;
+    gather_records(bonds, loaded.law, elastic.bond);
+    offset_of(i, elastic.offset);
+    elastic.slope = elastic.bond[0] / loaded.length;
+    elastic.tension = elastic.bond[1] * loaded.strength;
+    elastic.cohesion = elastic.bond[2] * loaded.strength;
+    elastic.quarter = 0.25 / elastic.tension;
+    return elastic;
+  }
+  /// Forces of whole joints from their points, and whether the rock there may fail.
+  template <class R>
+  BR_HD void add_points(const Loaded<R>& loaded, const ElasticLaw<R>& elastic,
+                        const JointOpening<R>& o, const BondTraction<R> (&t)[3],
+                        Whole<R>& w) const {
+    const R& h = loaded.length;
+    const R(&bond)[12] = elastic.bond;
+    Vec2Of<R> traction[3];
+    R normal = constant<R>(0.0), shear = normal;  // means
+    for (int q = 0; q < 3; ++q) {
+      traction[q] = t[q].shear * o.along + t[q].normal * o.normal;
+      normal = normal + weight_of(q) * t[q].normal;
+      shear = shear + weight_of(q) * t[q].shear;
+    }
+    const R stretch = o.size / h - 1.0;
+    const auto along_from = [&](const auto& start) {
+      return stress_along(o.along, stretch, normal, shear, bond[8], bond[9], bond[10], start);
+    };
+    const R along = graded.size > 0
+                        ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
+                        : along_from(in_situ);
+    const auto failing = may_fail(elastic.tension, elastic.cohesion, bond[3], normal, shear, along);
+    w.beyond = w.beyond || (bond[8] > 0.0 && failing);
+    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
+    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
+    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
+    w.force[0] = first.x;
+    w.force[1] = first.y;
+    w.force[2] = second.x;
+    w.force[3] = second.y;
+  }
+
+  /// Forces of a joint from its points.  [N/m]
+  BR_HD static JointForce force_of(const BondTraction<double> (&t)[3],
+                                   const JointOpening<double>& o, double h) {
+    Vec2 traction[3];
+    for (int q = 0; q < 3; ++q) traction[q] = t[q].shear * o.along + t[q].normal * o.normal;
+    const double weight = (-1.0 / 6.0) * h;
+    return {weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])};
+  }
+  /// Such a joint does not fail with the rock any more.
+  BR_HD static bool is_half_soft(const BondState<double>& point) {
+    return point.damage > 0.0 && softening(point.damage) < 0.5;
+  }
+  /// How the rock at a joint fails under the tractions of its points.
+  BR_HD Failure rock_failure_at(Index i, const JointBond& bond, const JointOpening<double>& o,
+                                const BondTraction<double> (&t)[3]) const {
+    double normal = 0.0, shear = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      normal += weight_of(q) * t[q].normal;
+      shear += weight_of(q) * t[q].shear;
+    }
+    const double along =
+        stress_along(o.along, o.size / length[i] - 1.0, normal, shear, bond.young, bond.poisson,
+                     bond.skew, graded.size > 0 ? start_of(i) : in_situ);
+    return failure_of(rock_failure(bond, strength[i], {normal, shear, along}));
+  }
+  /// Work of residual friction in a step, of a point in a mean.  [J/m2]
+  /// @param from, to  opening and slip before and now  @param last, state  of the point likewise
+  BR_HD static double rubbed_at(int q, const JointBond& bond, double share, double h,
+                                const Vec2& from, const Vec2& to, const BondState<double>& last,
+                                const BondState<double>& state) {
+    const double began = residual_traction(bond, share, h, from.x, from.y, last);
+    const double ended = residual_traction(bond, share, h, to.x, to.y, state);
+    return weight_of(q) * 0.5 * (began + ended) * (to.y - from.y);
+  }
+  /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
+  /// the nodes lose.
+  BR_HD void book_work(Index i, const JointOpening<double>& o, const Vec2& first,
+                       const Vec2& second, const JointForce& now) const {
+    const JointForce last = converted<double>(force[i]);
+    const Vec2 f = last.first + now.first, s = last.second + now.second;
+    JointWork& w = work[i];
+    w.open -=
+        0.5 * (dot(f, o.normal) * dot(first, o.normal) + dot(s, o.normal) * dot(second, o.normal));
+    w.slide -=
+        0.5 * (dot(f, o.along) * dot(first, o.along) + dot(s, o.along) * dot(second, o.along));
+  }
+  /// @param ago  how long before the positions  [s]
+  template <class R>
+  BR_HD static JointOpening<R> opening(const Loaded<R>& loaded, double ago) {
+    const auto at = [&](int k) {
+      const R(&c)[4] = loaded.corner[k];
+      return ago > 0.0 ? Vec2Of<R>{c[0] - ago * c[2], c[1] - ago * c[3]} : Vec2Of<R>{c[0], c[1]};
+    };
+    return opening_of(at(0), at(1), at(2), at(3));
+  }
+
  private:
   /// Whether the force of its last evaluation is other than zero.
   BR_HD bool acts(Index i) const {
@@ -253,23 +372,6 @@ struct JointForces {
     offset[0] = offset[1] = constant<R>(0.0);
     if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
   }
-  /// @param ago  how long before the positions  [s]
-  template <class R>
-  BR_HD static JointOpening<R> opening(const Loaded<R>& loaded, double ago) {
-    const auto at = [&](int k) {
-      const R(&c)[4] = loaded.corner[k];
-      return ago > 0.0 ? Vec2Of<R>{c[0] - ago * c[2], c[1] - ago * c[3]} : Vec2Of<R>{c[0], c[1]};
-    };
-    return opening_of(at(0), at(1), at(2), at(3));
-  }
-  /// Joints as long as they are whole.
-  template <class R>
-  struct Whole {
-    using Mask = decltype(R{} < R{});
-    R force[4];   ///< on both corners of side a  [N/m]
-    Mask beyond;  ///< it does not stay so: its forces mean nothing
-    Mask drags;   ///< it is, or may have been, pressed and slips enough for book_slips()
-  };
   /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
   /// stay so, or slips under pressure and this is not booked
   /// @param books  for which the length of the step must be known
@@ -283,45 +385,16 @@ struct JointForces {
   }
   template <class R>
   BR_HD Whole<R> whole(Index i, const Loaded<R>& loaded) const {
-    const R &share = loaded.strength, &h = loaded.length;
     const JointOpening<R> o = opening(loaded, 0.0);
-    R bond[12], offset[2];
-    gather_records(bonds, loaded.law, bond);
-    offset_of(i, offset);
-    const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
-    const R quarter = 0.25 / tension;
+    const ElasticLaw<R> elastic = elastic_law(i, loaded);
     Whole<R> w;
-    w.beyond = !(o.size > 1e-12 * h);
+    w.beyond = !(o.size > 1e-12 * loaded.length);
     w.drags = w.beyond;
-    Vec2Of<R> traction[3];
-    R normal = constant<R>(0.0), shear = normal;  // means
-    for (int q = 0; q < 3; ++q) {
-      const BondTraction<R> t =
-          elastic_response(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
-                           o.slide[q] + offset[1], w.beyond);
-      // While it is pressed its normal traction is straight; it may have been a step ago.
-      const R resists = cohesion - bond[3] * min(t.normal, constant<R>(0.0));
-      w.drags = w.drags || (t.normal < 0.05 * tension && abs(t.shear) > least_drag * resists);
-      traction[q] = t.shear * o.along + t.normal * o.normal;
-      normal = normal + weight_of(q) * t.normal;
-      shear = shear + weight_of(q) * t.shear;
-    }
-    const R stretch = o.size / h - 1.0;
-    const auto along_from = [&](const auto& start) {
-      return stress_along(o.along, stretch, normal, shear, bond[8], bond[9], bond[10], start);
-    };
-    const R along = graded.size > 0
-                        ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
-                        : along_from(in_situ);
-    const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
-    w.beyond = w.beyond || (bond[8] > 0.0 && failing);
-    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
-    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
-    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
-    w.force[0] = first.x;
-    w.force[1] = first.y;
-    w.force[2] = second.x;
-    w.force[3] = second.y;
+    BondTraction<R> t[3];
+    for (int q = 0; q < 3; ++q)
+      t[q] = elastic.at(o.open[q] + elastic.offset[0], o.slide[q] + elastic.offset[1], w.beyond,
+                        w.drags);
+    add_points(loaded, elastic, o, t, w);
     return w;
   }
   /// Stress at the start of the rock at a joint: the mean of its two triangles'.  [Pa]
@@ -347,21 +420,15 @@ struct JointForces {
                              const Vec2& offset, JointPoints& state,
                              BondTraction<double> (&bond_traction)[3]) const {
     const double h = length[i], share = strength[i];
-    double normal = 0.0, shear = 0.0;
     bool half_soft = false;  // it goes its own way to the end
     for (int q = 0; q < 3; ++q) {
       BondState<double>& point = state.point[q];
       bond_traction[q] =
           response(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, point);
-      normal += weight_of(q) * bond_traction[q].normal;
-      shear += weight_of(q) * bond_traction[q].shear;
-      half_soft = half_soft || (point.damage > 0.0 && softening(point.damage) < 0.5);
+      half_soft = half_soft || is_half_soft(point);
     }
     if (half_soft) return false;
-    const double along =
-        stress_along(o.along, o.size / h - 1.0, normal, shear, bond.young, bond.poisson, bond.skew,
-                     graded.size > 0 ? start_of(i) : in_situ);
-    const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
+    const Failure how = rock_failure_at(i, bond, o, bond_traction);
     if (how == Failure::none) return false;
     for (int q = 0; q < 3; ++q)
       fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, bond_traction[q],
@@ -382,18 +449,6 @@ struct JointForces {
     work[i].open += e.open;
     work[i].slide += e.slide;
   }
-  /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
-  /// the nodes lose.
-  BR_HD void book_work(Index i, const JointOpening<double>& o, const Vec2& first,
-                       const Vec2& second, const JointForce& now) const {
-    const JointForce last = converted<double>(force[i]);
-    const Vec2 f = last.first + now.first, s = last.second + now.second;
-    JointWork& w = work[i];
-    w.open -=
-        0.5 * (dot(f, o.normal) * dot(first, o.normal) + dot(s, o.normal) * dot(second, o.normal));
-    w.slide -=
-        0.5 * (dot(f, o.along) * dot(first, o.along) + dot(s, o.along) * dot(second, o.along));
-  }
   /// Of the work of this step, that of residual friction, by the trapezoidal rule.
   /// @param state  its points now; those of the step before are still kept
   BR_HD void book_friction(Index i, const JointBond& bond, const Vec2& offset,
@@ -401,14 +456,10 @@ struct JointForces {
                            const JointPoints& state) const {
     const double h = length[i];
     double sum = 0.0;
-    for (int q = 0; q < 3; ++q) {
-      const double from = before.slide[q] + offset.y, to = now.slide[q] + offset.y;
-      const double began = residual_traction(bond, strength[i], h, before.open[q] + offset.x, from,
-                                             points[i].point[q]);
-      const double ended =
-          residual_traction(bond, strength[i], h, now.open[q] + offset.x, to, state.point[q]);
-      sum += weight_of(q) * 0.5 * (began + ended) * (to - from);
-    }
+    for (int q = 0; q < 3; ++q)
+      sum += rubbed_at(
+          q, bond, strength[i], h, {before.open[q] + offset.x, before.slide[q] + offset.y},
+          {now.open[q] + offset.x, now.slide[q] + offset.y}, points[i].point[q], state.point[q]);
     rubbed[i] += h * sum;
   }
   BR_HD void finish(Index i) const {

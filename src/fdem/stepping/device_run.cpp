@@ -11,13 +11,13 @@
 #include "fdem/shape.hpp"
 #include "fdem/stepping/launches.hpp"
 #include "fdem/stepping/step.hpp"
+#include "fdem/stepping/wide_joints.hpp"
 #include "fdem/stepping/wide_kernels.hpp"
 
 namespace breccia::fdem {
 namespace {
 
 using fdem_shared::Bounded;
-using fdem_shared::BusyAlone;
 using fdem_shared::BusyWide;
 using fdem_shared::emptying;
 using fdem_shared::groups_of;
@@ -37,9 +37,8 @@ Bounded<Kernel, blocks> bounded(const Kernel& kernel) {
 Index fewest_couples_listed(Space space) {
   return space == Space::shadow ? 500 : 8'000;
 }
-/// Groups of threads that share the list of couples out: as many as run at a time, and more;
-/// threads that share the list of joints out.
-constexpr Index most_groups = 132 * 128, most_threads = 132 * 1024;
+/// Groups of threads that share a list out: as many as run at a time, and more.
+constexpr Index most_groups = 132 * 128;
 
 /// Joints and couples by one thread or group of threads each.
 template <class Number, class By>
@@ -77,13 +76,16 @@ void launch_busy_pairs(World& w, const By& by) {
     for_each_part(w.exec, part(joints, list_joints(bounded<8>(joint)), Parts<>{}));
     for_each_part(w.exec, part(couples, list_couples, Parts<>{}));
   }
-  const Index groups = groups_of<CouplesWide<Number>>(couples, most_groups),
-              threads = std::min(joints, most_threads);
+  using Joints = JointsWide<Number>;
+  using Couples = CouplesWide<Number>;
+  const Index groups = groups_of<Couples>(couples, most_groups),
+              joint_groups = groups_of<Joints>(joints, most_groups);
   // Joints first: one takes longest.
-  for_each_part(w.exec, part(threads, by(BusyAlone<Joint>{joint, busy_joint, joint_count, threads}),
-                             part(groups * CouplesWide<Number>::width,
-                                  by(BusyWide<CouplesWide<Number>>{{couple}, busy, count, groups}),
-                                  Parts<>{})));
+  for_each_part(w.exec,
+                part(joint_groups * Joints::width,
+                     by(BusyWide<Joints>{{joint}, busy_joint, joint_count, joint_groups}),
+                     part(groups * Couples::width,
+                          by(BusyWide<Couples>{{couple}, busy, count, groups}), Parts<>{})));
 }
 
 /// Joints and couples.
