@@ -269,8 +269,8 @@ void tell_undamped(const Config& config, std::vector<std::string>& warnings) {
       warnings.push_back(fmt::format(
           "material.{}: {} was found with local_damping = 0.3, and this case has {}. Without any, "
           "C30 has 29 to 33 % less compressive strength and 6 to 7 % less tensile strength "
-          "(docs/theory.md, 3); 'breccia calibrate' with --damping or with link_damping finds "
-          "numbers for it",
+          "(docs/theory.md, 3); docs/trials-concrete.md, 'Concretes with damped links', has keys "
+          "that were found without it",
           m.name, m.use, config.local_damping));
 }
 
