@@ -15,6 +15,7 @@ import statistics
 import sys
 
 import concrete_tables
+import damped_library
 import damped_links
 import impact_tables
 import ldpm_tables
@@ -123,6 +124,7 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "misfits": lambda _: misfit_table.markdown(lambda name, what: MAKERS[name](what)),
           "localisation": lambda _: localisation.markdown(lines_of("localisation")),
           "damping": lambda _: damped_links.table(lines_of("damping")),
+          "damped_library": lambda what: damped_library.markdown(lines_of("damped_library"), lines_of("library"), lines_of("reinforced"), what),
           "grips": lambda which: localisation.pulled_table(lines_of("grips"), which)}
 
 
