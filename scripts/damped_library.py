@@ -9,13 +9,12 @@ run. --record replaces lines of these runs in FILE (docs/results/damped_library.
 """
 import argparse
 import csv
-import json
 import math
 import pathlib
 import re
 import statistics
-import subprocess
 
+import keyed_specimens
 import published_runs
 import reinforced_tests
 from library_tables import newman, targets_of
@@ -40,39 +39,13 @@ def keys(concrete):
 
 
 def run(concrete, elements, test, packing, given):
-    folder = OUT / f"{concrete}-{elements}-{test}-{packing}"
-    if summary_of(folder):
-        return
-    if test in SPECIMENS:
-        command = ["test", ROOT / "cases/rc_slab/case.toml", "--material", "c30", "--set", f"material.c30.use={concrete}", *keys(concrete), "--only", test, "--seeds", 1, "--first-seed", packing,
-                   "--elements", elements, "--jobs", 1, "-o", folder]
-    else:
-        case = OUT / f"{folder.name}.toml"
-        case.write_text(reinforced_tests.TESTS[test + reinforced_tests.LIBRARY](packing, elements))
-        command = ["run", case, "-o", folder, "--force", "--no-progress", *keys(concrete)]
-    done = subprocess.run([str(part) for part in (given.binary, *command, "--threads", 1, "--device", given.device)], stdout=subprocess.DEVNULL)
-    if done.returncode not in (0, 9):
-        raise SystemExit(f"{folder.name} ended with {done.returncode}")
-
-
-def summary_of(folder):
-    """Of a beam, or of the one specimen of a test; None where it has not ended."""
-    found = [*folder.glob("summary.json"), *folder.glob("runs/*/summary.json")]
-    return json.loads(found[0].read_text()) if found else None
+    keyed_specimens.make(OUT / f"{concrete}-{elements}-{test}-{packing}", concrete, keys(concrete), test, elements, packing, given)
 
 
 def collected():
     """A line for each quantity of each finished run."""
-    for folder in sorted(path for path in OUT.iterdir() if path.is_dir()):
-        summary = summary_of(folder)
-        if not summary or summary["status"] in ("interrupted", "running"):
-            continue
+    for folder, summary, found in keyed_specimens.finished(OUT, at=2):
         concrete, elements, test, packing = folder.name.split("-")
-        if test in SPECIMENS:
-            with open(folder / "specimens.csv", newline="") as file:
-                found = {one["quantity"]: float(one["value"]) for one in csv.DictReader(file)}
-        else:
-            found = reinforced_tests.measured(test + reinforced_tests.LIBRARY, folder)
         for quantity, value in found.items():
             yield dict(zip(RECORD, (concrete, elements, test, packing, summary["breccia"]["commit"], summary["state_hash"], quantity, f"{value:.9g}")))
 
@@ -201,9 +174,9 @@ def main():
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
     sizes = [int(word) for word in given.elements.split(",")]
-    of_test = {test: [n for n in sizes if n == 1200 or test in OF_SIZES] for test in SPECIMENS} | {test: [n for n in sizes if n in BEAMS[test]] for test in BEAMS}
+    tests = [(test, n) for test in SPECIMENS for n in sizes if n == 1200 or test in OF_SIZES] + [(test, n) for test, of in BEAMS.items() for n in sizes if n in of]
     jobs = [(concrete, elements, test, int(packing), given) for packing in given.packings.split(",") for concrete in given.concretes.split(",")
-            for test, of in of_test.items() if given.only in test and (test not in BEAMS or concrete == "C30") for elements in of]
+            for test, elements in tests if given.only in test and (elements not in keyed_specimens.BEAMS or concrete == "C30")]
     published_runs.run_all(given.jobs, run, jobs)
     records = list(collected())
     print(targets(records))

@@ -8,13 +8,12 @@ keys are C30's. --only: tests with it in their name. Results are in out/slip_wea
 """
 import argparse
 import csv
-import json
 import math
 import pathlib
 import re
 import statistics
-import subprocess
 
+import keyed_specimens
 import published_runs
 import reinforced_tests
 from library_tables import newman
@@ -38,39 +37,13 @@ def stem(of, test, elements, packing):
 
 
 def run(of, test, elements, packing, given):
-    folder = OUT / stem(of, test, elements, packing)
-    if summary_of(folder):
-        return
-    if test in SPECIMENS:
-        command = ["test", ROOT / "cases/rc_slab/case.toml", "--material", "c30", "--set", "material.c30.use=C30", *keys(of), "--only", test, "--seeds", 1, "--first-seed", packing,
-                   "--elements", elements, "--jobs", 1, "-o", folder]
-    else:
-        case = OUT / f"{folder.name}.toml"
-        case.write_text(reinforced_tests.TESTS[test + reinforced_tests.LIBRARY](packing, elements))
-        command = ["run", case, "-o", folder, "--force", "--no-progress", *keys(of)]
-    done = subprocess.run([str(part) for part in (given.binary, *command, "--threads", 1, "--device", given.device)], stdout=subprocess.DEVNULL)
-    if done.returncode not in (0, 9):
-        raise SystemExit(f"{folder.name} ended with {done.returncode}")
-
-
-def summary_of(folder):
-    """Of a beam, or of the one specimen of a test; None where it has not ended."""
-    found = [*folder.glob("summary.json"), *folder.glob("runs/*/summary.json")]
-    return json.loads(found[0].read_text()) if found else None
+    keyed_specimens.make(OUT / stem(of, test, elements, packing), "C30", keys(of), test, elements, packing, given)
 
 
 def collected():
     """A line for each quantity of each finished run."""
-    for folder in sorted(path for path in OUT.iterdir() if path.is_dir()):
-        summary = summary_of(folder)
-        if not summary or summary["status"] in ("interrupted", "running"):
-            continue
+    for folder, summary, found in keyed_specimens.finished(OUT, at=1):
         of, test, elements, packing = folder.name.split("-")
-        if (folder / "specimens.csv").exists():
-            with open(folder / "specimens.csv", newline="") as file:
-                found = {one["quantity"]: float(one["value"]) for one in csv.DictReader(file)}
-        else:
-            found = reinforced_tests.measured(test + reinforced_tests.LIBRARY, folder)
         for quantity, value in found.items():
             yield dict(zip(RECORD, (*of.split("_"), elements, test, packing, summary["breccia"]["commit"], summary["machine"]["device"], summary["state_hash"], quantity, f"{value:.9g}")))
 

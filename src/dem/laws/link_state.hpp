@@ -6,7 +6,7 @@
 
 namespace breccia::dem {
 
-/// What the damping branch of a link bears.
+/// Forces of the damping branch of a link.
 template <class R>
 struct BranchForce {
   R normal;         ///< tension positive  [N]

@@ -78,7 +78,7 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
     field("branch_shear", "N", branch_shear);
     field("damped_away", "J", damped_away);
   }
-  /// What a link keeps. All arrays on the host.
+  /// State of a link. All arrays on the host.
   LinkState<double> state_of(const ConcreteLink& law, Index i) const {
     return with_number(precision, [&](auto number) {
       const auto& history = kept.as<decltype(number)>();
@@ -206,7 +206,7 @@ struct ConcreteLinkForces {
     write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
                      r.moment, kn, kt, kr, kr);
   }
-  /// What a link keeps.
+  /// State of a link.
   BR_HD LinkState<double> state_of(Index i) const {
     LinkState<double> state{opening[i], shear[i], moment[i]};
     if (law.rated()) state.rate = rate[i];

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Specimens of `breccia test` and beams of reinforced_tests.py of a concrete of `breccia materials` with other keys, for scripts that compare such concretes."""
+import csv
+import json
+import pathlib
+import subprocess
+
+import reinforced_tests
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BEAMS = (3900, 7800, 15600)  # elements of beams; a notched beam of `breccia test` is called "bending", too
+
+
+def make(folder, concrete, keys, test, elements, packing, given):
+    """Runs a test, or a beam, unless its folder has a finished one."""
+    if summary_of(folder):
+        return
+    if test + reinforced_tests.LIBRARY in reinforced_tests.TESTS and elements in BEAMS:
+        case = folder.parent / f"{folder.name}.toml"
+        case.write_text(reinforced_tests.TESTS[test + reinforced_tests.LIBRARY](packing, elements))
+        command = ["run", case, "-o", folder, "--force", "--no-progress", *keys]
+    else:
+        command = ["test", ROOT / "cases/rc_slab/case.toml", "--material", "c30", "--set", f"material.c30.use={concrete}", *keys, "--only", test, "--seeds", 1, "--first-seed", packing,
+                   "--elements", elements, "--jobs", 1, "-o", folder]
+    done = subprocess.run([str(part) for part in (given.binary, *command, "--threads", 1, "--device", given.device)], stdout=subprocess.DEVNULL)
+    if done.returncode not in (0, 9):
+        raise SystemExit(f"{folder.name} ended with {done.returncode}")
+
+
+def summary_of(folder):
+    """Of a beam, or of the one specimen of a test; None where it has not ended."""
+    found = [*folder.glob("summary.json"), *folder.glob("runs/*/summary.json")]
+    return json.loads(found[0].read_text()) if found else None
+
+
+def finished(out, at):
+    """Folder, summary and {quantity: value} of each finished run in a folder; at: which part of a run's name, between dashes, is its test."""
+    for folder in sorted(path for path in out.iterdir() if path.is_dir()):
+        summary = summary_of(folder)
+        if not summary or summary["status"] in ("interrupted", "running"):
+            continue
+        if not (folder / "specimens.csv").exists():
+            yield folder, summary, reinforced_tests.measured(folder.name.split("-")[at] + reinforced_tests.LIBRARY, folder)
+            continue
+        with open(folder / "specimens.csv", newline="") as file:
+            yield folder, summary, {one["quantity"]: float(one["value"]) for one in csv.DictReader(file)}
