@@ -4,7 +4,7 @@
     scripts/impact_tables.py ball [--seeds 10] [--speeds 10,30] [--concrete NAME,...] [--bars yes,no]
     scripts/impact_tables.py hard [--seeds 5] [--speeds 20,30,45,60] [--concrete NAME,...] [--bars yes,no]
     scripts/impact_tables.py print ball|hard
-    scripts/impact_tables.py record         all finished rows into docs/results/impact.csv
+    scripts/impact_tables.py record         all finished rows into docs/results/impact.csv; lines of others stay
     scripts/impact_tables.py plot           the plot of cases/rc_slab from that file; needs python3-matplotlib
 
 "ball" is the case as it is: the ball of concrete. "hard" replaces it by one rigid sphere of its mass and size
@@ -26,6 +26,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import frames  # noqa: E402
 import impact_formulas  # noqa: E402
+import published_runs  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "out" / "impact"
@@ -33,7 +34,7 @@ OUT = ROOT / "out" / "impact"
 MASS, DIAMETER, THICKNESS = 14.5, 0.226, 0.1
 
 # Concretes of the slab: as the case has it; with friction bounded under pressure; C30 of `breccia materials`, and as earlier
-# versions had it, with a corner (docs/validation-concrete.md), or with a smaller slip_wear (scripts/slip_wear.py); links as packed, without the bulk's fabric at faces; the slab of cases/rc_slab_ldpm, and that with grains of 10 to 20 mm.
+# versions had it, with a corner (docs/validation-concrete.md), or with a smaller slip_wear (scripts/slip_wear.py), or with damped links (scripts/damped_library.py); links as packed, without the bulk's fabric at faces; the slab of cases/rc_slab_ldpm, and that with grains of 10 to 20 mm.
 CONCRETES = {
     "case": {},
     "friction_cap": {"friction_cap": '"3 MPa"', "broken_friction": "0.6", "broken_rolling_limit": "1.0"},
@@ -41,12 +42,13 @@ CONCRETES = {
     "C30_corner": {"use": '"C30"\nyoung = "33.6 GPa"\npoisson = 0.144\ntensile_strength = "0.725 MPa"\ncohesion = "9.078 MPa"\n'
                           'criterion = "corner"\nfriction_angle = "10 deg"\nknee_strength = 0.0\nslip_wear = 0.3\nfabric = "even"'},
     "C30_wear": {"use": '"C30"\nslip_wear = 0.3\ntensile_strength = "2.419 MPa"\ncohesion = "25.56 MPa"'},
+    "C30_damped": {"use": '"C30"\nyoung = "33.93 GPa"\npoisson = 0.1771\ntensile_strength = "2.419 MPa"\ncohesion = "43.61 MPa"\nslip_wear = 0.3\nlink_damping = 0.3'},
     "packed": {"fabric": '"packed"', "stiffness": '"estimated"'},
     "ldpm": {},
     "ldpm_fine": {"mix": '{ cement = 315.0, water_ratio = 0.5, air = 0.03, smallest = "10 mm", largest = "20 mm", fuller = 0.5 }'},
 }
 # Prisms of 2,000 and 1,200 elements of these concretes: docs/validation-concrete.md. LDPM: cases/rc_slab_ldpm.
-STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "C30_corner": 38e6, "C30_wear": 38e6, "packed": 26.3e6, "ldpm": 28.9e6, "ldpm_fine": 31.5e6}
+STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "C30_corner": 38e6, "C30_wear": 38e6, "C30_damped": 38e6, "packed": 26.3e6, "ldpm": 28.9e6, "ldpm_fine": 31.5e6}
 
 
 def body(text, name):
@@ -296,10 +298,12 @@ def main():
         plot(given.record, ROOT / "cases/rc_slab/sweep.png")
         return
     if given.what == "record":
-        with open(given.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(collected())
+        records = list(collected())
+        run_of = ("kind", "concrete", "bars", "speed", "end", "seed")
+        made = {tuple(str(one[k]) for k in run_of) for one in records}
+        with open(given.record, newline="") as file:
+            before = [one for one in csv.DictReader(file) if tuple(one[k] for k in run_of) not in made]
+        published_runs.write_record(given.record, RECORD, before + records)
         return
     given.speeds = given.speeds or ("30" if given.what == "ball" else "20,30,45,60")
     how = given.jobs, given.binary, given.device
