@@ -8,7 +8,6 @@ beams of reinforced_tests.py as well (elements 3900 to 15600). --only: tests wit
 run. --record replaces lines of these runs in FILE (docs/results/damped_library.csv).
 """
 import argparse
-import csv
 import math
 import pathlib
 import re
@@ -181,12 +180,7 @@ def main():
     records = list(collected())
     print(targets(records))
     if given.record:
-        run_of = RECORD[:4]
-        here, before = {tuple(one[k] for k in run_of) for one in records}, []
-        if given.record.exists():
-            with open(given.record, newline="") as file:
-                before = [one for one in csv.DictReader(file) if tuple(one[k] for k in run_of) not in here]
-        published_runs.write_record(given.record, RECORD, before + records)
+        published_runs.merge_record(given.record, RECORD, records, RECORD[:4])
 
 
 if __name__ == "__main__":

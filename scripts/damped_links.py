@@ -111,11 +111,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         records = [line for task in [pool.submit(make, given, case, *job) for job in jobs] for line in task.result()]
     if given.record:
-        key = lambda line: tuple(str(line[k]) for k in (*KEYS, "specimen"))  # noqa: E731
-        made = {key(line) for line in records}
-        with open(given.record, newline="") as file:
-            records = [line for line in csv.DictReader(file) if key(line) not in made] + records
-        published_runs.write_record(given.record, RECORD, records)
+        records = published_runs.merge_record(given.record, RECORD, records, (*KEYS, "specimen"))
     print(table(records))
 
 

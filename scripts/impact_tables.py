@@ -298,12 +298,7 @@ def main():
         plot(given.record, ROOT / "cases/rc_slab/sweep.png")
         return
     if given.what == "record":
-        records = list(collected())
-        run_of = ("kind", "concrete", "bars", "speed", "end", "seed")
-        made = {tuple(str(one[k]) for k in run_of) for one in records}
-        with open(given.record, newline="") as file:
-            before = [one for one in csv.DictReader(file) if tuple(one[k] for k in run_of) not in made]
-        published_runs.write_record(given.record, RECORD, before + records)
+        published_runs.merge_record(pathlib.Path(given.record), RECORD, list(collected()), RECORD[:6])
         return
     given.speeds = given.speeds or ("30" if given.what == "ball" else "20,30,45,60")
     how = given.jobs, given.binary, given.device

@@ -307,10 +307,7 @@ def pulled(given):
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         records = [line for task in [pool.submit(*job) for job in jobs] for line in task.result()]
     if given.record:
-        made = {(line["setting"], str(line["seed"])) for line in records}
-        with open(given.record, newline="") as file:
-            records = [line for line in csv.DictReader(file) if (line["setting"], line["seed"]) not in made] + records
-        published_runs.write_record(given.record, RECORD, records)
+        records = published_runs.merge_record(given.record, RECORD, records, RECORD[:2])
     print(pulled_table(records, "places"), pulled_table(records, "damping"), sep="\n\n")
 
 

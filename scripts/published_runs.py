@@ -24,3 +24,14 @@ def write_record(path, fields, records):
         writer = csv.DictWriter(file, fields, lineterminator="\n")
         writer.writeheader()
         writer.writerows(records)
+
+
+def merge_record(path, fields, records, run_of):
+    """Writes the records into a file; lines of other runs, told apart by the fields `run_of`, stay before them. @returns all lines"""
+    made = {tuple(str(one[key]) for key in run_of) for one in records}
+    before = []
+    if path.exists():
+        with open(path, newline="") as file:
+            before = [one for one in csv.DictReader(file) if tuple(one[key] for key in run_of) not in made]
+    write_record(path, fields, before + records)
+    return before + records

@@ -7,7 +7,6 @@ T and C of each set were found by secants, so that prism and tension of packings
 keys are C30's. --only: tests with it in their name. Results are in out/slip_wear/; called again, only what is missing is run. --record replaces lines of these runs in FILE (docs/results/slip_wear.csv).
 """
 import argparse
-import csv
 import math
 import pathlib
 import re
@@ -144,13 +143,7 @@ def main():
     records = list(collected())
     print(markdown(records, given.packings.replace(",", " ")))
     if given.record:
-        run_of = RECORD[:5]
-        here = {tuple(one[k] for k in run_of) for one in records}
-        others = []
-        if given.record.exists():
-            with open(given.record, newline="") as file:
-                others = [one for one in csv.DictReader(file) if tuple(one[k] for k in run_of) not in here]
-        published_runs.write_record(given.record, RECORD, others + records)
+        published_runs.merge_record(given.record, RECORD, records, RECORD[:5])
 
 
 if __name__ == "__main__":
