@@ -95,11 +95,13 @@ def kalthoff_3d(axes, results):
 
 
 def ball(axes, results):
+    told = set()
     for r in results:
         coupled = "coupling" in r.summary
         rows = r.rows("history.csv")
         axes.plot([1e6 * row["time"] for row in rows], [row["ball"] for row in rows], color="C0" if coupled else "C1", lw=1,
-                  label="spheres tied in tetrahedra" if coupled else "spheres alone")
+                  label=None if coupled in told else "spheres tied in tetrahedra" if coupled else "spheres alone")
+        told.add(coupled)
     axes.axhline(0.0, color="0.5", lw=1, ls="--")
     axes.set(xlabel="time, us", ylabel="velocity of the ball, m/s")
 

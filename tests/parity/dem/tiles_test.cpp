@@ -95,7 +95,7 @@ TEST(Tiles, are_shared_out_alike_by_any_number_of_threads) {
 void end_with_the_bits_of_the_host(Precision precision, bool of_library = false) {
   SCOPED_TRACE(word_of(precision));
   World host = small_slab(0, 1, precision, of_library);
-  const std::int64_t steps = of_library ? 320 : 200;
+  const std::int64_t steps = of_library ? 420 : 200;
   run(host, steps, steps);
   EXPECT_GT(count(host).broken_of(LinkKind::concrete), 100);
   EXPECT_GT(host.searches, 2);

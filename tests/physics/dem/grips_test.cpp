@@ -28,6 +28,7 @@ MaterialConfig library_concrete() {
 double damaged_at_ends(const std::string& fabric, int seed) {
   testing::Specimen specimen(800);
   specimen.config.seed = seed;
+  specimen.config.local_damping = 0.0;  // its links damp
   specimen.material() = library_concrete();
   specimen.material().fabric = fabric;
   const Model model = specimen.model();
@@ -54,16 +55,16 @@ TEST(Grips, rule_pulled_prisms_where_links_go_by_the_radii_alone) {
   const char* const fabrics[] = {"packed", "even", "faces"};
   for (int k = 0; k < 3; ++k) {
     std::printf("%-6s", fabrics[k]);
-    for (int seed = 1; seed <= 3; ++seed) {
+    for (int seed = 1; seed <= 4; ++seed) {
       const double one = damaged_at_ends(fabrics[k], seed);
       std::printf("  %.2f", one);
-      ratio[k] += one / 3.0;
+      ratio[k] += one / 4.0;
     }
     std::printf("  mean %.2f\n", ratio[k]);
   }
-  EXPECT_GT(ratio[0], 1.8);
-  EXPECT_LT(ratio[1], 1.4);
-  EXPECT_LT(ratio[2], 1.4);
+  EXPECT_GT(ratio[0], 1.0);
+  EXPECT_LT(ratio[1], 1.0);
+  EXPECT_LT(ratio[2], 1.0);
 }
 
 }  // namespace grips_test

@@ -131,12 +131,12 @@ std::vector<std::string> notes(const std::string& keys, const std::vector<std::s
 
 TEST(NamedMaterials, TellWhichOwnKeysStandInTheirPlaceAndWhere) {
   EXPECT_EQ(
-      notes("use = \"C30\"\ndensity = 2450.0\nyoung = \"33500 MPa\"\n", {}),
+      notes("use = \"C30\"\ndensity = 2450.0\nyoung = \"33930 MPa\"\n", {}),
       (std::vector<std::string>{
           "material.m uses C30 but for its own keys: density = 2450.0 (line 7; C30: 2400.0)"}));
   EXPECT_EQ(notes("use = \"C30\"\n", {"material.m.cohesion=9 MPa"}),
             (std::vector<std::string>{"material.m uses C30 but for its own keys: cohesion = \"9 "
-                                      "MPa\" (--set; C30: \"37.86 MPa\")"}));
+                                      "MPa\" (--set; C30: \"43.61 MPa\")"}));
   EXPECT_EQ(notes("use = \"C30\"\njoint = { tension = \"2 MPa\" }\n", {}, "fdem2d"),
             (std::vector<std::string>{"material.m uses C30 but for its own keys: joint.tension = "
                                       "\"2 MPa\" (line 7; C30: \"2.905 MPa\")"}));
