@@ -84,19 +84,14 @@ method = "dem3d"
 title = "Cylinder between walls"
 
 [time]
-end = "12 ms"
+end = "9 ms"
 
 [output]
 frames = 10
 color = "damage"
 
 [material.c30]
-law = "concrete"
-density = "2400 kg/m3"
-young = "30 GPa"
-poisson = 0.2
-tensile_strength = "2.2 MPa" # of links; macroscopic strength follows from it
-cohesion = "5.5 MPa"
+use = "C30" # of the program: breccia materials C30; found with packings and links as below
 
 [[body]]
 name = "cylinder"
@@ -104,7 +99,10 @@ shape = "cylinder"
 material = "c30"
 radius = "50 mm"
 length = "200 mm" # along z, about its centre
-pack = { count = 1500 }
+pack = { count = 1500, size_ratio = 2.0, compactness = 0.56 }
+
+[links]
+range = 1.443
 
 [[wall]]
 name = "bottom"
@@ -147,12 +145,7 @@ frames = 12
 color = "damage"
 
 [material.c30]
-law = "concrete"
-density = "2400 kg/m3"
-young = "30 GPa"
-poisson = 0.2
-tensile_strength = "2.2 MPa"
-cohesion = "5.5 MPa"
+use = "C30" # of the program: breccia materials C30; found with packings and links as below
 
 [material.steel_ball]
 law = "grain" # contacts only: one element does not break
@@ -164,7 +157,10 @@ name = "plate"
 shape = "box"
 material = "c30"
 size = ["400 mm", "400 mm", "30 mm"]
-pack = { count = 3000 }
+pack = { count = 3000, size_ratio = 2.0, compactness = 0.56 }
+
+[links]
+range = 1.443
 
 [[body]]
 name = "ball"
@@ -352,14 +348,7 @@ frames = 15
 color = "damage"
 
 [material.c30]
-law = "concrete"
-density = "2400 kg/m3"
-young = "30 GPa"
-poisson = 0.2
-tensile_strength = "2.2 MPa"
-cohesion = "5.5 MPa"
-softening = 10.0
-rolling_limit = 0.15
+use = "C30" # of the program: breccia materials C30; found with packings and links as below
 
 [material.b500]
 law = "steel"
@@ -377,7 +366,7 @@ name = "slab"
 shape = "box"
 material = "c30"
 size = ["360 mm", "360 mm", "100 mm"]
-pack = { count = 1648, compactness = 0.55 }
+pack = { count = 1648, size_ratio = 2.0, compactness = 0.56 }
 
 [[body]] # 2 mats x 2 directions x 3 bars
 name = "bars"
@@ -391,8 +380,11 @@ shape = "sphere"
 material = "c30"
 center = [0.0, 0.0, "108 mm"]
 radius = "57 mm"
-pack = { count = 97, compactness = 0.54 }
+pack = { count = 97, size_ratio = 2.0, compactness = 0.56 }
 velocity = [0.0, 0.0, "-30 m/s"]
+
+[links]
+range = 1.443
 
 [[support]]
 name = "left"

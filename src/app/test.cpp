@@ -36,8 +36,8 @@ std::string specimens_of(const lab::Sample& s) {
         1e3 * s.material.mix.smallest, 1e3 * s.material.mix.largest);
   return fmt::format(
       "Specimens of spheres, {} in the prism of 0.1 x 0.1 x 0.2 m, {} in the disc, and as large "
-      "ones as the prism's in the others; compactness {}, interaction range {}.",
-      s.elements, std::max(s.elements, lab::fewest_in_disc), s.compactness, s.range);
+      "ones as the prism's in the others; compactness {}, interaction range {}, local damping {}.",
+      s.elements, std::max(s.elements, lab::fewest_in_disc), s.compactness, s.range, s.damping);
 }
 std::string specimens_of(const lab::RockSample& s) {
   return fmt::format(

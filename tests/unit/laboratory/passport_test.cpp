@@ -395,6 +395,13 @@ pack = { count = 100, compactness = 0.56 }
   EXPECT_TRUE(exit_code == 0 || exit_code == 9) << read_whole_file(scratch / "output.txt");
   const std::string page = read_whole_file(scratch / "out/passport.md");
   EXPECT_NE(page.find("| direct tension, prism | strength | MPa | "), std::string::npos) << page;
+  const std::string drag = "its links do not damp, so specimens have local damping of 0.3;";
+  EXPECT_NE(page.find("local damping 0.3."), std::string::npos) << page;
+  EXPECT_NE(read_whole_file(scratch / "output.txt").find(drag), std::string::npos);
+  wait_for(start_program(arguments + " --set material.c.link_damping=0.3", scratch / "output.txt"));
+  EXPECT_EQ(read_whole_file(scratch / "output.txt").find(drag), std::string::npos);
+  EXPECT_NE(read_whole_file(scratch / "out/passport.md").find("local damping 0."),
+            std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/curves/tension-1.csv"));
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/passport.svg"));
   EXPECT_NE(read_whole_file(scratch / "out/specimens.csv").find("\ntension,1,strength,MPa,"),
