@@ -114,6 +114,11 @@ struct TileActionsOf {
   bool books;  ///< whether this tile books what the item spends
 };
 using TileActions = TileActionsOf<double>;
+/// Whether items that answer nothing lie together, so that it pays to leave out their law.
+template <class Actions>
+inline constexpr bool has_idle_together = false;
+template <class Number>
+inline constexpr bool has_idle_together<TileActionsOf<Number>> = true;
 template <class Number>
 BR_HD inline void write_actions(const TileActionsOf<Number>& actions, Index at,
                                 const double (&numbers)[9], const double (&stiffness)[9]) {

@@ -43,7 +43,7 @@ BR_HD inline Carried<R> carried_moment(const LinkConstants<R>& link, const PairM
   }
 }
 
-/// Cuts a trial force or moment back to its limit, to nothing where the link does not act.
+/// Cuts a trial force or moment back to its limit, to +0 where the link does not act.
 template <class R, class Truth>
 BR_HD inline Cut<R> cut(const Vec3Of<R>& before, const Vec3Of<R>& trial, const R& limit,
                         const Truth& acts, const R& stiffness) {
@@ -55,12 +55,12 @@ BR_HD inline Cut<R> cut(const Vec3Of<R>& before, const Vec3Of<R>& trial, const R
   // A link without load before and after keeps nothing: no root, no division.
   const auto idle = !acts && before.x == 0.0 && before.y == 0.0 && before.z == 0.0;
   if (!any(beyond && !idle)) {
-    c.kept = select(beyond, zero * trial, trial);
+    c.kept = select(beyond, Vec3Of<R>{zero, zero, zero}, trial);
     return c;
   }
   const R size = sqrt(squared);
   const R scale = select(acts, limit / select(size > zero, size, one), zero);
-  c.kept = select(beyond, scale * trial, trial);
+  c.kept = select(beyond, select(acts, scale * trial, Vec3Of<R>{zero, zero, zero}), trial);
   const R per_stiffness = constant<R>(0.5) / select(stiffness > zero, stiffness, one);
   c.spent = per_stiffness * dot(before + c.kept, trial - c.kept);
   c.plastic = select(beyond, 2.0 * per_stiffness * (size - scale * size), zero);

@@ -106,6 +106,23 @@ struct ConcreteLinkOf {
     return response_at<parts>(dynamic, motion, state);
   }
 
+  /// Whether a link answers nothing in a step and keeps nothing, as it did before: a broken one
+  /// whose ends are apart.
+  template <ConcreteParts parts, class R>
+  BR_HD auto is_idle(const LinkConstants<R>& link, const R& distance,
+                     const LinkState<R>& state) const {
+    const auto none = [](const Vec3Of<R>& v) { return v.x == 0.0 && v.y == 0.0 && v.z == 0.0; };
+    auto idle = state.opening < 0.0 && !(stretch_of(link, distance) < 0.0);
+    idle = idle && none(state.shear) && none(state.moment);
+    if (damps<parts>()) idle = idle && state.branch.normal == 0.0 && none(state.branch.shear);
+    return idle;
+  }
+  /// Whether the ends of a broken link have parted for good.
+  template <class R>
+  BR_HD static auto is_parted(const LinkConstants<R>& link, const R& distance, const R& opening) {
+    return opening < 0.5 * (link_broken + link_released) ||
+           (opening < 0.0 && distance > 1.5 * max(link.length, link.touching));
+  }
   /// Whether sliding and rolling use links up.
   template <ConcreteParts parts = concrete_all>
   BR_HD bool wears() const {
@@ -291,7 +308,7 @@ struct ConcreteLinkOf {
     const R smooth = max(constant<R>(0.0), (state.rate + gained) / (1.0 + crossed));
     state.rate = select(waits, smooth, state.rate);
     link.factor = factor_of(link, state.opening, state.rate);
-    const R stretch = max(state.opening, stretch_of(link, motion));
+    const R stretch = max(state.opening, stretch_of(link, motion.distance));
     hold_factor(link, waits, stretch, state);
   }
   /// Holds the factor of waiting links whose opening reaches beyond their dynamic strength.
@@ -313,7 +330,7 @@ struct ConcreteLinkOf {
     const R zero = constant<R>(0.0), one = constant<R>(1.0), kn = link.stiffness;
     const TensionSoftening<R> t = tension_of<parts>(link);
     Stand<R> s;
-    s.stretch = stretch_of(link, motion);
+    s.stretch = stretch_of(link, motion.distance);
     s.intact = opening_before >= 0.0;
     s.opening = max(opening_before, s.stretch);
     s.torn = s.intact && kn * s.opening >= t.elastic_at_rupture();
@@ -450,7 +467,7 @@ struct ConcreteLinkOf {
     const auto whole = survives && (s.pressed || s.health >= one);
     const R push = select(acts && !survives, min(trial.normal, -1.0 * r.normal), zero);
     const BranchForce<R> force{select(whole, trial.normal, push),
-                               select(whole, one, zero) * trial.shear};
+                               select(whole, trial.shear, Vec3Of<R>{zero, zero, zero})};
     r.damped = damping.taken(link, kt, motion, state.branch, force);
     r.normal = r.normal + force.normal;
     r.shear = r.shear + force.shear;

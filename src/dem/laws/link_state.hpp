@@ -54,11 +54,11 @@ struct LinkConstants {
 };
 /// u = D - D_eq  [m]
 template <class R>
-BR_HD R stretch_of(const LinkConstants<R>& link, const PairMotion<R>& motion) {
+BR_HD R stretch_of(const LinkConstants<R>& link, const R& distance) {
   if constexpr (is_single<R>)
     return link.stretch;
   else
-    return motion.distance - link.length;
+    return distance - link.length;
 }
 
 }  // namespace breccia::dem

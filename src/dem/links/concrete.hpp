@@ -173,12 +173,18 @@ struct ConcreteLinkForces {
   /// @tparam parts  those that `by` may have
   template <ConcreteParts parts = concrete_all, class R>
   BR_HD void update(const Law& by, Index i, const Loaded<R>& loaded) const {
-    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, loaded.ends.difference(), dt);
-    const LinkConstants<R> link = constants(loaded, motion, loaded.ends.touching());
     LinkState<R> state = loaded.state;
-    if (by.template rated<parts>()) state.rate = load<R>(rate, i);
     if (by.template damps<parts>())
       state.branch = {load<R>(branch_normal, i), load<R>(branch_shear, i)};
+    if constexpr (has_idle_together<Actions>) {
+      const R distance = norm(loaded.ends.motion.way);
+      const LinkConstants<R> link = constants(loaded, distance, loaded.ends.touching());
+      if (by.template is_idle<parts>(link, distance, state))
+        return leave_idle<parts>(by, i, link, distance, state.opening);
+    }
+    const PairMotion<R> motion = pair_motion<R>(loaded.ends.motion, loaded.ends.difference(), dt);
+    const LinkConstants<R> link = constants(loaded, motion.distance, loaded.ends.touching());
+    if (by.template rated<parts>()) state.rate = load<R>(rate, i);
     const LinkResponse<R> r = by.template response<parts>(link, motion, state);
 
     if constexpr (std::is_same_v<Number, float>) {
@@ -220,14 +226,32 @@ struct ConcreteLinkForces {
   BR_WHOLE BR_HD void operator()(Index i) const { run_at<Item>(*this, i); }
 
  private:
+  /// What response() does to an idle link.
+  template <ConcreteParts parts, class R>
+  BR_HD void leave_idle(const Law& by, Index i, const LinkConstants<R>& link, const R& distance,
+                        const R& kept) const {
+    const R zero = constant<R>(0.0);
+    const Vec3Of<R> none{zero, zero, zero};
+    store(opening, i,
+          select(Law::is_parted(link, distance, kept), constant<R>(link_released), kept));
+    store(shear, i, none);
+    store(moment, i, none);
+    if (by.template damps<parts>()) {
+      store(branch_normal, i, zero);
+      store(branch_shear, i, none);
+    }
+    R nothing[9];
+    for (R& number : nothing) number = zero;
+    write_actions(actions, first_action + i, nothing, nothing);
+  }
   template <class R>
-  BR_HD LinkConstants<R> constants(const Loaded<R>& loaded, const PairMotion<R>& motion,
+  BR_HD LinkConstants<R> constants(const Loaded<R>& loaded, const R& distance,
                                    const R& touching) const {
     if constexpr (is_single<R>) {
       LinkConstants<R> link{narrowed(loaded.length), loaded.stiffness, loaded.area, 0.5 * touching,
                             touching};
-      link.stretch = loaded.ends.excess / (motion.distance + link.length);
-      link.chance = chance_of(motion.distance, step);
+      link.stretch = loaded.ends.excess / (distance + link.length);
+      link.chance = chance_of(distance, step);
       return link;
     } else {
       return {loaded.length, loaded.stiffness, loaded.area, 0.5 * touching, touching};

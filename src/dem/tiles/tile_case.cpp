@@ -100,7 +100,7 @@ Multiprocessors multiprocessors_for(const World& w) {
   if (w.exec.tiles == 0) return {};
   if (w.exec.space != Space::cuda) {
     constexpr Index most = 132;  // as if it were a GPU
-    return {w.exec.tiles < 0 ? most : w.exec.tiles, std::size_t{1} << 30};
+    return {w.exec.tiles < 0 ? most : w.exec.tiles, w.tiles.memory};
   }
   const Multiprocessors all = multiprocessors();
   return {w.exec.tiles < 0 ? all.count : std::min(all.count, w.exec.tiles), all.memory};
@@ -188,6 +188,8 @@ TileCase<Number> case_of(World& w, TilePlan& plan, const StopAt& stop) {
           std::as_const(w.interface.on_device.laws).view(),
           end,
           plan.view(),
+          reinterpret_cast<TileConstants<typename TileMemory<Number>::Constant>*>(
+              plan.constants.data()),
           plan.forces.data(),
           plan.least.data(),
           plan.tag,

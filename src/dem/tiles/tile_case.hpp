@@ -18,6 +18,13 @@
 
 namespace breccia::dem {
 
+/// Waits for the threads of a tile.
+BR_HD inline void meet_in_tile() {
+#if defined(__CUDA_ARCH__)
+  __syncthreads();
+#endif
+}
+
 /// Writes a number for other tiles.
 BR_HD inline void put(TileWord* to, std::uint64_t bits, std::uint32_t tag) {
   const auto low = static_cast<std::uint32_t>(bits), high = static_cast<std::uint32_t>(bits >> 32);
@@ -73,7 +80,7 @@ struct TileSearchCase {
   View<TilePlace> starts;
   View<TileContact> found;
   std::size_t bytes;  ///< of a tile's memory
-  Index most_acting;  ///< give_actions()
+  Index most_acting;  ///< make_room()
 
   BR_HD NearSphere sphere(Index e) const {
     const Index n = spheres.size / 5;
@@ -109,6 +116,7 @@ struct TileCase {
   View<const InterfaceLink> interface_laws;
   EndOfStep<StepRule> end;
   TilesView tiles;
+  TileConstants<typename TileMemory<Number>::Constant>* constants;  ///< of links outside tiles
   TileWord *forces, *least;
   std::uint32_t tag;  ///< before the first step
   StepClock start;

@@ -173,7 +173,7 @@ void tell_contacts(const World& w, TilePlan& plan, std::size_t most_bytes) {
     tile.touched = static_cast<Index>(all_touched.size()) - tile.first_touched;
     const Index most = most_acting(w.exec.space);
     const std::size_t bytes = with_arithmetic(w.exec.precision, [&](auto number) {
-      return give_actions<decltype(number)>(tile, plan.groups, most_bytes, most);
+      return make_room<decltype(number)>(tile, plan.groups, most_bytes, most);
     });
     plan.bytes = std::max(plan.bytes, bytes);
   }

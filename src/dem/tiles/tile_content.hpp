@@ -25,14 +25,17 @@ struct TileContent {
   /// @param lists  as the last search has left them
   BR_HD static void lay_out(const TileCase<Number>& of, const TileLists& lists, Index tile_number,
                             std::byte* base) {
-    reinterpret_cast<TileMemory<Number>*>(base)->lay_out(lists.tiles.data[tile_number],
-                                                         of.tiles.groups);
+    auto& memory = *reinterpret_cast<TileMemory<Number>*>(base);
+    memory.lay_out(lists.tiles.data[tile_number], of.tiles.groups);
+    if (memory.tile.constants_outside) memory.constants = of.constants + memory.tile.first_link;
   }
 
   /// Brings everything from the arrays of the world; nothing of what others may write after
   /// enter().
   BR_HD void enter(const TileLists& lists, Index thread, Index threads) const {
     bring_elements(lists, thread, threads);
+    meet_in_tile();
+    order_links(thread, threads);
     bring_links(thread, threads);
     bring_lists(lists, thread, threads);
   }
@@ -159,6 +162,44 @@ struct TileContent {
       memory.room[e] = rough * rough / 1.0001F;
     }
   }
+  /// How much a step asks of a link's law: of softened ones most, of broken ones apart nothing.
+  BR_HD int stage_of(const TileLink& link) const {
+    constexpr int softened = 0, touching = 1, whole = 2, apart = 3;
+    const auto g = static_cast<Index>(link.number);
+    const Stores opening = all.concrete.opening[g];
+    const double stiffness = all.concrete.stiffness[g], area = all.concrete.area[g],
+                 length = all.concrete.length[g];
+    const double strength = all.concrete_laws[static_cast<Index>(link.group)].tensile_strength;
+    if (opening >= 0.0) return stiffness * opening < strength * area ? whole : softened;
+    const Vec3 way = memory.state[link.b].position - memory.state[link.a].position;
+    constexpr double soon = 1.01;  // may touch in the steps to come
+    return dot(way, way) < soon * soon * length * length ? touching : apart;
+  }
+  /// Concrete links lie by these stages, since a warp takes the longest way that any of its links
+  /// needs; in the order of the tile's list otherwise. No sum depends on where they lie.
+  BR_HD void order_links(Index thread, Index threads) const {
+    const Index links = tile.concrete, runs = tile_runs(links);
+    for (Index l = thread; l < links; l += threads)
+      memory.stage[l] = static_cast<std::uint8_t>(stage_of(all.tiles.links[tile.first_link + l]));
+    meet_in_tile();
+    for (Index k = thread; k < tile_stages * runs; k += threads)
+      memory.stages[k] = in_run(k % runs, tile_run_length, k / runs);
+    meet_in_tile();
+    for (Index l = thread; l < links; l += threads) {
+      const Index run = l / tile_run_length, stage = memory.stage[l];
+      Index before = in_run(run, l % tile_run_length, stage);
+      for (Index k = 0; k < stage * runs + run; ++k) before += memory.stages[k];
+      memory.order[l] = static_cast<TilePlace>(before);
+    }
+    meet_in_tile();
+  }
+  /// Links of a stage among the first ones of a run.
+  BR_HD Index in_run(Index run, Index first, Index stage) const {
+    Index count = 0;
+    for (Index l = run * tile_run_length; first > 0 && l < tile.concrete; ++l, --first)
+      count += memory.stage[l] == stage ? 1 : 0;
+    return count;
+  }
   BR_HD void bring_links(Index thread, Index threads) const {
     const TilesView& t = all.tiles;
     for (Index l = thread; l < tile.concrete; l += threads) {
@@ -170,16 +211,16 @@ struct TileContent {
                  area = static_cast<Constant>(all.concrete.area[g]);
       const Stores opening = all.concrete.opening[g];
       const auto shear_force = all.concrete.shear[g], bending = all.concrete.moment[g];
-      memory.concrete[l] = link;
-      memory.length[l] = length;
-      memory.stiffness[l] = stiffness;
-      memory.area[l] = area;
-      memory.opening[l] = opening;
-      shear().store(l, shear_force);
-      moment().store(l, bending);
+      const Index at = memory.order[l];
+      memory.concrete[at] = link;
+      memory.length[at] = length;
+      memory.constants[at] = {stiffness, area};
+      memory.opening[at] = opening;
+      shear().store(at, shear_force);
+      moment().store(at, bending);
       if (!all.tiles.groups.damped) continue;
-      memory.branch_normal[l] = all.concrete.branch_normal[g];
-      branch_shear().store(l, all.concrete.branch_shear[g]);
+      memory.branch_normal[at] = all.concrete.branch_normal[g];
+      branch_shear().store(at, all.concrete.branch_shear[g]);
     }
     for (Index l = thread; l < tile.steel; l += threads) {
       const TileLink link = t.links[tile.first_link + tile.concrete + l];
@@ -201,6 +242,12 @@ struct TileContent {
       memory.bond_area[l] = area;
       memory.bond_state[l] = state;
     }
+  }
+  /// Number k of `rows`, of the list as it was made.
+  BR_HD TilePlace row_number(Index k, TilePlace listed) const {
+    const Index link = static_cast<Index>(listed) - tile.bars() - 1;
+    if (k < tile.first_entry() || link < 0) return listed;
+    return static_cast<TilePlace>(tile.bars() + 1 + memory.order[link]);
   }
   /// Items word by word, neighbouring threads neighbouring words.
   template <class T>
@@ -224,7 +271,8 @@ struct TileContent {
         next[j] = t.rows[tile.first_row + (k + j * threads < numbers ? k + j * threads : k)];
       BR_UNROLL
       for (Index j = 0; j < ahead; ++j)
-        if (k + j * threads < numbers) memory.rows[k + j * threads] = next[j];
+        if (k + j * threads < numbers)
+          memory.rows[k + j * threads] = row_number(k + j * threads, next[j]);
     }
     for (Index k = thread; k <= tile.own; k += threads)
       memory.starts[k] = lists.starts[tile.first_start + k];

@@ -319,6 +319,7 @@ class Sharing {
     if (std::find(fits.begin(), fits.end(), 0) != fits.end()) return nullptr;
     join(filled);
     plan_->tile_of = std::move(from_.tile_of);
+    plan_->constants.resize(2 * plan_->links.size());
     plan_->forces.resize(2 * 6 * static_cast<Index>(state_.size()));
     plan_->least.resize(2 * count_ * count_);
     return std::move(plan_);
@@ -412,6 +413,7 @@ TilePlan::TilePlan(Space space)
       axes(space),
       rows(space),
       told(space),
+      constants(space),
       forces(space),
       least(space),
       twin_state(space),

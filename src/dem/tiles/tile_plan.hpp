@@ -46,6 +46,7 @@ struct Tile {
   Index concrete, steel, interface, contacts;
   Index acting;  ///< contacts that may have their actions in the tile's memory at one time
   Index row_entries;
+  bool constants_outside;  ///< of concrete links: its memory does not hold them with all else
   Index first_own, first_linked, first_touched, first_link, first_axis, first_row, first_start,
       first_contact;
 
@@ -57,10 +58,23 @@ struct Tile {
   BR_HD Index row_numbers() const { return first_entry() + row_entries; }
 };
 
+/// Concrete links of a tile are counted in runs, by how much a step asks of their law.
+inline constexpr Index tile_stages = 4, tile_run_length = 32;
+BR_HD constexpr Index tile_runs(Index links) {
+  return (links + tile_run_length - 1) / tile_run_length;
+}
+
 /// Groups of links by kind: each has a law.
 struct TileGroups {
   Index concrete, steel, interface;
   bool damped;  ///< whether concrete links have damping branches
+};
+
+/// Constants of a concrete link.
+/// @tparam N  as ConcreteLinkOf
+template <class N>
+struct alignas(2 * sizeof(N)) TileConstants {
+  N stiffness, area;
 };
 
 /// Torque on and force on an element.
@@ -115,8 +129,8 @@ struct TileMemory {
   Placed<float> room;       ///< square of the margin, less what rounding may take  [m2]
 
   Placed<TileLink> concrete, steel, interface;
-  Placed<double> length;  ///< of concrete links, and what follows
-  Placed<Constant> stiffness, area;
+  Placed<double> length;               ///< of concrete links, and what follows
+  TileConstants<Constant>* constants;  ///< here, or outside in the order of the tile's links
   Placed<Stores> opening, shear, moment;
   Placed<float> branch_normal, branch_shear;  ///< empty without damping branches
   Placed<double> bar_length;
@@ -126,8 +140,12 @@ struct TileMemory {
   Placed<InterfaceState> bond_state;
 
   Placed<PairForceOf<Stores>> actions;  ///< of concrete links, behind those of bars
-  Placed<ElementLoad> received;   ///< of others' elements; in the memory of `actions`, when these
-                                  ///< are summed
+  Placed<ElementLoad> received;  ///< of others' elements; in the memory of `actions`, when these
+                                 ///< are summed
+  Placed<TilePlace> order;  ///< where concrete links of the tile's list lie in it, while they are
+                            ///< brought; behind `received`, as the next two
+  Placed<std::uint8_t> stage;
+  Placed<Index> stages;
   Placed<PairForce> bar_actions;  ///< of steel links, then bonds, then zeros
   Placed<TilePlace> rows;  ///< own elements by the length of their rows; first action of each as a,
                            ///< as b, and the end; then actions from `bar_actions` on, as many as a
@@ -146,6 +164,7 @@ struct TileMemory {
   Placed<InterfaceLink> interface_laws;
   Placed<StepClock> clocks;  ///< two, in turns
 
+  /// `constants` that lie outside are placed by the caller.
   /// @returns the bytes that it takes, from this object on
   BR_HD std::size_t lay_out(const Tile& of, const TileGroups& groups);
 };
@@ -206,8 +225,7 @@ BR_HD std::size_t TileMemory<Number>::lay_out(const Tile& of, const TileGroups& 
   pieces.take(room, own);
   pieces.take(concrete, tile.concrete);
   pieces.take(length, tile.concrete);
-  pieces.take(stiffness, tile.concrete);
-  pieces.take(area, tile.concrete);
+  pieces.take(constants, tile.constants_outside ? 0 : tile.concrete);
   pieces.take(opening, tile.concrete);
   pieces.take(shear, 3 * tile.concrete);
   pieces.take(moment, 3 * tile.concrete);
@@ -231,6 +249,9 @@ BR_HD std::size_t TileMemory<Number>::lay_out(const Tile& of, const TileGroups& 
   pieces.take(bar_actions, tile.bars() + 1);
   detail::Pieces also = pieces;
   also.take(received, all - own);
+  also.take(order, tile.concrete);
+  also.take(stage, tile.concrete);
+  also.take(stages, tile_stages * tile_runs(tile.concrete));
   pieces.take(actions, tile.concrete);
   return pieces.used > also.used ? pieces.used : also.used;
 }
@@ -253,16 +274,19 @@ struct TilesView {
   TileLists lists;  ///< as the launch finds them
 };
 
-/// Gives a tile room for up to `most` actions of contacts, as far as memory goes.
+/// Finds room for what a search brings a tile: constants of links go outside if need be, and up to
+/// `most` actions of contacts get places in its memory, as far as it goes.
 /// @returns bytes that it needs
 template <class Number>
-BR_HD std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes,
-                               Index most) {
+BR_HD std::size_t make_room(Tile& tile, const TileGroups& groups, std::size_t most_bytes,
+                            Index most) {
   const auto bytes = [&] {
     TileMemory<Number> memory;
     return memory.lay_out(tile, groups);
   };
   tile.acting = 0;
+  tile.constants_outside = false;
+  tile.constants_outside = bytes() > most_bytes;
   const std::size_t least = bytes();
   if (least >= most_bytes) return least;
   const std::size_t room = (most_bytes - least) / sizeof(PairForce);
@@ -368,8 +392,9 @@ struct TilePlan {
   PieceOf<Index> touched_told;
   PieceOf<TilePlace> starts_told;
   PieceOf<TileContact> contacts_told;
-  Buffer<TileWord> forces;  ///< of each element, six words, for even and odd steps
-  Buffer<TileWord> least;   ///< from each tile to each, likewise
+  Buffer<double> constants;  ///< of concrete links outside the memory of tiles: room for two each
+  Buffer<TileWord> forces;   ///< of each element, six words, for even and odd steps
+  Buffer<TileWord> least;    ///< from each tile to each, likewise
   // Contacts whose b is in another tile than a are followed by both; that of b keeps its own state.
   Buffer<ContactState> twin_state;
   Buffer<double> twin_slid, twin_damped;
@@ -412,6 +437,7 @@ class Tiles {
   std::unique_ptr<TilePlan> plan;
   bool known = false;           ///< whether `plan` tells how it stands; null: no tiles
   bool contacts_known = false;  ///< whether it has heard of the last search
+  std::size_t memory = std::size_t{1} << 30;  ///< of each at most, where a processor takes them [B]
 };
 
 }  // namespace breccia::dem

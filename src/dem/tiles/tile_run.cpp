@@ -425,6 +425,8 @@ void launch([[maybe_unused]] const World& w, const TileCase<Number>& all) {
     };
     if ((all.concrete_parts & ~concrete_bounded) == 0)
       return go(launch_tiles<threads, Number, concrete_bounded>);
+    if ((all.concrete_parts & concrete_damps) == 0)
+      return go(launch_tiles<threads, Number, concrete_with_tiles & ~concrete_damps>);
     return go(launch_tiles<threads, Number, concrete_with_tiles>);
   }
 #endif

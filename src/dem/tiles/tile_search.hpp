@@ -15,13 +15,6 @@
 
 namespace breccia::dem {
 
-/// Waits for the threads of a tile.
-BR_HD inline void meet_in_tile() {
-#if defined(__CUDA_ARCH__)
-  __syncthreads();
-#endif
-}
-
 /// A contact that a tile has found, as one of its own elements sees it.
 struct FoundContact {
   Index partner;         ///< place in the world
@@ -182,8 +175,7 @@ struct TileSearch {
       next.contacts = memory.counters[0];
       next.touched = memory.counters[1];
       next.first_contact = next.first_touched = number * most_contacts_of_tile;
-      const std::size_t bytes =
-          give_actions<Number>(next, all.tiles.groups, s.bytes, s.most_acting);
+      const std::size_t bytes = make_room<Number>(next, all.tiles.groups, s.bytes, s.most_acting);
       lost = lost || bytes > s.bytes;
       s.tiles[number] = next;
     }

@@ -218,6 +218,7 @@ struct TileStep : TileContent<Number> {
   template <ConcreteParts parts>
   BR_HD void concrete_link(const StepTime& now, Index l) const {
     const TileLink link = memory.concrete[l];
+    const auto constants = memory.constants[l];  // first, as they may come from outside
     const Index n = tile.concrete;
     using Kernel = ConcreteLinkForces<Number, TileActionsOf<Stores>>;
     const Kernel kernel{{},
@@ -243,8 +244,8 @@ struct TileStep : TileContent<Number> {
                         now.step};
     typename Kernel::template Loaded<Item> loaded;
     loaded.length = memory.length[l];
-    loaded.stiffness = Item(memory.stiffness[l]);
-    loaded.area = Item(memory.area[l]);
+    loaded.stiffness = Item(constants.stiffness);
+    loaded.area = Item(constants.area);
     loaded.state = {Item(memory.opening[l]), vector(memory.shear, l), vector(memory.moment, l)};
     const LinkPair<double> ends = link_pair(end(link.a), end(link.b));
     if constexpr (is_single<Item>)

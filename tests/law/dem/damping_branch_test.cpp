@@ -119,6 +119,39 @@ TEST(DampingBranch, draws_the_ends_of_a_broken_link_not_together) {
   EXPECT_EQ(state.branch.normal, 0.0);
 }
 
+/// Tiles leave out the law of such links, so that it must do what they do, signs of zeros included.
+TEST(DampingBranch, and_springs_of_a_broken_link_whose_ends_are_apart_keep_nothing) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const ConcreteLink l = law(2e6);
+  Pair pair;
+  LinkState<double> state{link_broken, {}, {}};
+  const auto is_idle = [&](double distance) {
+    return l.is_idle<concrete_all>(link, distance, state);
+  };
+  l.response(link, pair.move_b({-0.1, 0.3, 0.0}), state);
+  EXPECT_FALSE(is_idle(pair.b.position.x));  // pressed
+  EXPECT_FALSE(is_idle(1.1 * length));       // it has borne something
+  const LinkResponse<double> last = l.response(link, pair.move_b({1e3, 0.0, 0.0}), state);
+  EXPECT_NE(last.slid, 0.0);
+  int steps = 0;
+  while (state.opening > link_released && ++steps < 1000) {
+    const PairMotion<double> m =
+        pair.move_b({20.0, normal(random), normal(random)}, {normal(random), 1.0, 2.0});
+    ASSERT_TRUE(is_idle(m.distance));
+    EXPECT_EQ(l.is_parted(link, m.distance, state.opening), m.distance > 1.5 * length);
+    const LinkResponse<double> r = l.response(link, m, state);
+    for (const double x : {r.normal, r.active, r.shortened, r.slid, r.yielded, r.broke, r.damped})
+      EXPECT_EQ(x, 0.0);
+    const BranchForce<double>& branch = state.branch;
+    for (const Vec3& v : {r.shear, state.shear, r.moment, state.moment, branch.shear,
+                          Vec3{r.normal, branch.normal, 0.0}})
+      for (const double x : {v.x, v.y, v.z}) EXPECT_TRUE(x == 0.0 && !std::signbit(x));
+  }
+  EXPECT_GT(steps, 300);
+  EXPECT_LT(steps, 1000);
+}
+
 TEST(DampingBranch, takes_what_a_random_path_puts_in_and_nothing_stores_or_spends) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;

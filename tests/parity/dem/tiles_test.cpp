@@ -133,6 +133,43 @@ TEST(Tiles, end_with_the_bits_of_the_host_in_single_precision) {
   end_with_the_bits_of_the_host(Precision::single);
 }
 
+/// Where their memory does not hold all, tiles keep constants of links outside, each for itself.
+void keep_constants_outside(Precision precision) {
+  SCOPED_TRACE(word_of(precision));
+  constexpr Index tiles = 40;
+  constexpr std::int64_t steps = 200;
+  const auto some_are_outside = [](const std::vector<Tile>& all) {
+    const auto outside = std::count_if(all.begin(), all.end(),
+                                       [](const Tile& tile) { return tile.constants_outside; });
+    return outside > 0 && outside < tiles;
+  };
+  World host = small_slab(0, 1, precision), w = small_slab(tiles, 1, precision);
+  run(host, steps, steps);
+  ASSERT_TRUE(runs_by_tiles(w));
+  ASSERT_FALSE(some_are_outside(w.tiles.plan->tiles));
+  const std::size_t room = w.tiles.plan->bytes / 34 * 33;
+  w = small_slab(tiles, 1, precision);
+  w.tiles.memory = room;
+  ASSERT_TRUE(runs_by_tiles(w));
+  EXPECT_TRUE(some_are_outside(w.tiles.plan->tiles));
+  run(w, 37, steps);
+  EXPECT_TRUE(runs_by_tiles(w));
+  ASSERT_TRUE(w.tiles.plan->found_there);
+  std::vector<Tile> found(tiles);
+  copy_bytes(found.data(), Space::host, w.tiles.plan->searches.tiles.data(), Space::shadow,
+             found.size() * sizeof(Tile));
+  EXPECT_TRUE(some_are_outside(found));
+  EXPECT_EQ(state_hash(w), state_hash(host));
+  EXPECT_EQ(w.searches, host.searches);
+  same_contacts(w, host);
+}
+TEST(Tiles, keep_constants_outside_where_their_memory_does_not_hold_them) {
+  keep_constants_outside(Precision::full);
+}
+TEST(Tiles, keep_constants_outside_in_single_precision) {
+  keep_constants_outside(Precision::single);
+}
+
 /// Once bodies at rest fall, the host must take their common motion off what they travel: tiles
 /// leave in the middle of the step whose search finds that, and launches go on.
 TEST(Tiles, leave_a_search_that_finds_a_drift_to_the_host) {
