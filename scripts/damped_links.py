@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Strengths of the library's C30 with damped links, over element size, rate and local damping, for docs/theory.md.
+"""Strengths of C30 as the library had it before its links were damped (`keyed_specimens.LOCAL_C30`), with damped links, over element size, rate and local damping, for docs/theory.md.
 
     scripts/damped_links.py [--binary build/release/breccia] [--jobs 1] [--only TEXT] [-o out/damped_links] [--record docs/results/damping.csv]
 
@@ -18,6 +18,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
+import keyed_specimens  # noqa: E402
 import published_runs  # noqa: E402
 
 KEYS = ["damping", "time", "local", "elements", "rate", "test"]
@@ -34,7 +35,7 @@ end = 1e-3
 range = 1.443
 [material.c]
 use = "C30"
-[[body]]
+""" + "".join(f"{key} = {value}\n" for key, value in keyed_specimens.LOCAL_C30.items()) + """[[body]]
 name = "b"
 material = "c"
 size = [0.1, 0.1, 0.1]
@@ -87,7 +88,7 @@ def table(records):
 
     lines = [("600 elements", 0, 600, 1), ("1,200", 0, 1200, 1), ("2,400", 0, 2400, 1), ("4,800", 0, 4800, 1), ("1,200, a quarter of the rate", 0, 1200, 0.25), ("1,200, with local damping of 0.05", 0.05, 1200, 1)]
     titles = [f"m = {m:g}, tau c/D = {t:g}" for m, t in BRANCHES]
-    out = ["| C30, f_c and f_t, MPa | " + " | ".join(titles) + " |", "|---" * (1 + len(titles)) + "|"]
+    out = ["| C30_local, f_c and f_t, MPa | " + " | ".join(titles) + " |", "|---" * (1 + len(titles)) + "|"]
     for words, *of in lines:
         out.append(f"| {words} | " + " | ".join(", ".join(cell(b, *of, name, "strength", digits) for name, digits in (("compression_prism", 1), ("tension", 2))) for b in BRANCHES) + " |")
     out.append("| disc of 2,400, 2P/(pi d t), MPa | " + " | ".join(cell(b, 0, 1200, 1, "brazilian", "strength", 2) for b in BRANCHES) + " |")

@@ -26,6 +26,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import frames  # noqa: E402
 import impact_formulas  # noqa: E402
+import keyed_specimens  # noqa: E402
 import published_runs  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -33,22 +34,21 @@ OUT = ROOT / "out" / "impact"
 
 MASS, DIAMETER, THICKNESS = 14.5, 0.226, 0.1
 
-# Concretes of the slab: as the case has it; with friction bounded under pressure; C30 of `breccia materials`, and as earlier
-# versions had it, with a corner (docs/validation-concrete.md), or with a smaller slip_wear (scripts/slip_wear.py), or with damped links (scripts/damped_library.py); links as packed, without the bulk's fabric at faces; the slab of cases/rc_slab_ldpm, and that with grains of 10 to 20 mm.
+# Concretes of the slab: as the case has it; with friction bounded under pressure; C30 of `breccia materials`, and as the library had it before its links were damped, or
+# before that with a corner (docs/validation-concrete.md); links as packed, without the bulk's fabric at faces; the slab of cases/rc_slab_ldpm, and that with grains of 10 to 20 mm.
 CONCRETES = {
     "case": {},
     "friction_cap": {"friction_cap": '"3 MPa"', "broken_friction": "0.6", "broken_rolling_limit": "1.0"},
     "C30": {"use": '"C30"'},
+    "C30_local": {"use": '"C30"\n' + "\n".join(f"{key} = {value}" for key, value in keyed_specimens.LOCAL_C30.items())},
     "C30_corner": {"use": '"C30"\nyoung = "33.6 GPa"\npoisson = 0.144\ntensile_strength = "0.725 MPa"\ncohesion = "9.078 MPa"\n'
-                          'criterion = "corner"\nfriction_angle = "10 deg"\nknee_strength = 0.0\nslip_wear = 0.3\nfabric = "even"'},
-    "C30_wear": {"use": '"C30"\nslip_wear = 0.3\ntensile_strength = "2.419 MPa"\ncohesion = "25.56 MPa"'},
-    "C30_damped": {"use": '"C30"\nyoung = "33.93 GPa"\npoisson = 0.1771\ntensile_strength = "2.419 MPa"\ncohesion = "43.61 MPa"\nslip_wear = 0.3\nlink_damping = 0.3'},
+                          'criterion = "corner"\nfriction_angle = "10 deg"\nknee_strength = 0.0\nslip_wear = 0.3\nlink_damping = 0.0\nfabric = "even"'},
     "packed": {"fabric": '"packed"', "stiffness": '"estimated"'},
     "ldpm": {},
     "ldpm_fine": {"mix": '{ cement = 315.0, water_ratio = 0.5, air = 0.03, smallest = "10 mm", largest = "20 mm", fuller = 0.5 }'},
 }
 # Prisms of 2,000 and 1,200 elements of these concretes: docs/validation-concrete.md. LDPM: cases/rc_slab_ldpm.
-STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "C30_corner": 38e6, "C30_wear": 38e6, "C30_damped": 38e6, "packed": 26.3e6, "ldpm": 28.9e6, "ldpm_fine": 31.5e6}
+STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "C30_local": 38e6, "C30_corner": 38e6, "packed": 26.3e6, "ldpm": 28.9e6, "ldpm_fine": 31.5e6}
 
 
 def body(text, name):

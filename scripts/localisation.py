@@ -13,7 +13,7 @@ layer, a tenth of the height thick (20 mm), of the direction and place that hold
 alike everywhere has as many of them there as it has links there, and somewhat more, since the band is the best of many: as many
 links drawn at random say how much.
 
---pulled: prisms of the library's C30 as `breccia test --only tension` makes them, with other damping, rates, grips and packings (`PULLED`), until they have parted, and
+--pulled: prisms of C30 as the library had it before its links were damped (`keyed_specimens.LOCAL_C30`), as `breccia test --only tension` makes them, with other damping, rates, grips and packings (`PULLED`), until they have parted, and
 its other specimens with other damping and rates (`DAMPED`). Lines of --record that are not made anew stay.
 """
 import argparse
@@ -30,6 +30,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import frames  # noqa: E402
+import keyed_specimens  # noqa: E402
 import published_runs  # noqa: E402
 
 KEYS = ["friction_cap=3e6", "broken_friction=0.6", "broken_rolling_limit=1"]
@@ -140,6 +141,7 @@ def markdown(records):
 
 # ---------------------------------------------------------------- pulled prisms
 
+LOCAL = "".join(f"{key} = {value}\n" for key, value in keyed_specimens.LOCAL_C30.items())
 HALF, SECTION, SPEED = 0.1, 0.01, 0.02  # m, m2, m/s of each end
 # The first is what `breccia test` does; layer: of a grip, in radii of equal elements; end: ms, at the full rate.
 PLAIN = {"elements": 4000, "fabric": "faces", "damping": 0.3, "rate": 1, "layer": 2, "fix": "z", "pack": "0.6, 1.4", "periodic": "", "end": 8}
@@ -151,7 +153,7 @@ PULLED = [({}, 6), (SHORT, range(7, 13)), ({"damping": 0.0}, 6), ({"damping": 0.
           *((AS_TESTED | {"damping": damping, "rate": rate}, 4) for damping, rate in ((0.3, 1), (0.3, 0.25), (0.05, 1), (0.05, 0.25), (0.0, 1))), *((AS_TESTED | {"elements": 2400, "damping": d}, 4) for d in (0.3, 0.05))]
 DAMPED = [("compression_prism", damping, rate, 1200, (1, 2, 3)) for damping in (0.3, 0.05) for rate in (1, 0.25)]
 DAMPED += [(test, damping, 1, 1200, (1, 2, 3)) for test in ("brazilian", "tension_notched") for damping in (0.3, 0.05)]
-DAMPED += [("compression_prism", 0.0, 1, n, (5, 6, 7)) for n in (600, 1200, 2400, 4800)] + [("tension", 0.0, 1, n, (5, 6, 7)) for n in (600, 1200, 2400)]  # as library.csv has with 0.3
+DAMPED += [("compression_prism", 0.0, 1, n, (5, 6, 7)) for n in (600, 1200, 2400, 4800)] + [("tension", 0.0, 1, n, (5, 6, 7)) for n in (600, 1200, 2400)]  # with 0.3 it shows 38 MPa and 2.96 MPa
 RECORD = ["setting", "seed", "commit", "device", "hash", "quantity", "value"]
 
 
@@ -184,7 +186,7 @@ margin = 0.5
 range = {reach}
 [material.c]
 use = "C30"
-rate = "none"
+{LOCAL}rate = "none"
 fabric = "{of["fabric"]}"
 [[body]]
 name = "specimen"
@@ -232,7 +234,7 @@ def damp(test, damping, rate, elements, seed, given):
     folder = given.out / f"damped-{test}-{damping}-{rate}-{elements}-{seed}"
     if not (folder / "summary.json").exists():
         made, case = given.out / f"made-{test}-{elements}-{seed}", given.out / "c30.toml"
-        case.write_text('breccia = 1\nmethod = "dem3d"\n[time]\nend = 1e-3\n[links]\nrange = 1.443\n[material.c]\nuse = "C30"\n'
+        case.write_text('breccia = 1\nmethod = "dem3d"\n[time]\nend = 1e-3\n[links]\nrange = 1.443\n[material.c]\nuse = "C30"\n' + LOCAL +
                         '[[body]]\nname = "b"\nmaterial = "c"\nsize = [0.1, 0.1, 0.1]\npack = { count = 300, size_ratio = 2.0, compactness = 0.56 }\n')
         if not list(made.glob("cases/*.toml")):
             subprocess.run([given.binary, "test", case, "--material", "c", "--only", test, "--first-seed", str(seed), "--seeds", "1", "--elements", str(elements),
@@ -281,7 +283,7 @@ def pulled_table(records, which):
         return [one[quantity] for one in found.get(named, {}).values() if quantity in one]
 
     if which == "places":
-        out = ["| 4,000 elements, C30 | crack, mm from the nearer grip | within 17 mm of it | f_t at the grips, MPa | in the middle | grips over middle |", "|---" * 6 + "|"]
+        out = ["| 4,000 elements, C30_local | crack, mm from the nearer grip | within 17 mm of it | f_t at the grips, MPa | in the middle | grips over middle |", "|---" * 6 + "|"]
         for words, setting in SHOWN:
             whole = PLAIN | setting
             depth, grips, middle = (of(setting, quantity) for quantity in ("depth", "strength", "middle"))
@@ -293,7 +295,7 @@ def pulled_table(records, which):
     test = lambda name: {key: {"test": name, "damping": key[0], "rate": key[1]} for key in tension}  # noqa: E731
     rows = [("f_t, read at the grips, MPa", tension, "strength", 2), ("f_t, in the middle, MPa", tension, "middle", 2), ("f_c, MPa", test("compression_prism"), "strength", 1),
             ("disc of 2,400, 2P/(pi d t), MPa", test("brazilian"), "strength", 2), ("G_F, notched prism, J/m2", test("tension_notched"), "fracture_energy", 0)]
-    out = ["| C30, 1,200 elements | damping 0.3 | a quarter of the rate | damping 0.05 | a quarter of the rate |", "|---" * 5 + "|"]
+    out = ["| C30_local, 1,200 elements | damping 0.3 | a quarter of the rate | damping 0.05 | a quarter of the rate |", "|---" * 5 + "|"]
     for words, settings, quantity, digits in rows:
         values = [of(setting, quantity) for setting in settings.values()]
         out.append(f"| {words} | " + " | ".join(text(v, digits) if v else "" for v in values) + " |")

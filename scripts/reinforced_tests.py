@@ -3,7 +3,7 @@
 
     scripts/reinforced_tests.py [--seeds 3] [--elements 0] [--binary build/release/breccia] [--device cpu] [--jobs 1] [NAME...]
     NAME: pull_out bending flow shear stirrups plate tied drop, or one of drop (drop_1 to drop_4, tied_, ductile_); bending_C30, likewise flow, shear,
-    stirrups, plate: with C30 of `breccia materials`; bending_damped_C30, likewise: with local damping of 0.3, shear_little_C30: of 0.05; elements: of the concrete; 0: 3,900 of a beam, 1,080 of a pull-out
+    stirrups, plate: with C30 of `breccia materials`; elements: of the concrete; 0: 3,900 of a beam, 1,080 of a pull-out
 
 Concrete: c30 of cases/rc_slab with friction bounded under pressure (f_c 33.5, f_t 3.3 MPa in prisms of `breccia test`); bars
 of 500 MPa; bond by the Model Code 1990, tau_max 13.7 MPa = 2.5 sqrt(30). In shear and stirrups a crack along a bar takes 100 J/m2, and
@@ -225,10 +225,6 @@ DROPS = [f"{name}_{speed}" for name in STRUCK for speed in SPEEDS]
 BEAMS = ["bending", "flow", "shear", "stirrups", "plate"]
 TESTS |= {name + LIBRARY: lambda s, n, name=name: with_library(TESTS[name](s, n)) for name in BEAMS}
 USUAL |= {name + LIBRARY: 3900 for name in BEAMS}
-DAMPED = {"_damped": 0.3, "_little": 0.05}  # ending of names before LIBRARY: local damping of these
-TESTS |= {name + word + LIBRARY: lambda s, n, name=name, share=share: TESTS[name + LIBRARY](s, n).replace("local_damping = 0.0\n", f"local_damping = {share}\n")
-          for word, share in DAMPED.items() for name in BEAMS}
-USUAL |= {name + word + LIBRARY: 3900 for word in DAMPED for name in BEAMS}
 TESTS |= {name: lambda s, n, name=name: drop(s, n, name[:-2], int(name[-1])) for name in DROPS}
 USUAL |= {name: 3900 for name in ("tied", *DROPS)}
 
@@ -236,23 +232,13 @@ USUAL |= {name: 3900 for name in ("tied", *DROPS)}
 # Concretes of beams: E [GPa], the f_c that design rules ask for, and f_c of `breccia test` with elements of the beams' sizes (600, 1,200, 2,400 and
 # 4,800 in the prism; of the slab's concrete the last by interpolation)  [MPa]
 YOUNG = {"": 30e3, LIBRARY: 33.6e3}
-USUAL_STRENGTH = {"": F_C, LIBRARY: 37.3}
-STRENGTH = {"": {3900: 34.6, 15600: 31.6, 31200: 30.4}, LIBRARY: {3900: 38.6, 7800: 38.0, 15600: 37.3, 31200: 36.8}}
-
-
-UNDAMPED = {3900: 27.2, 7800: 26.3, 15600: 24.6, 31200: 24.7}  # of C30 without local damping, packings 5 to 7 (grips.csv)
+USUAL_STRENGTH = {"": F_C, LIBRARY: 37.8}
+STRENGTH = {"": {3900: 34.6, 15600: 31.6, 31200: 30.4}, LIBRARY: {3900: 39.5, 7800: 38.6, 15600: 37.8, 31200: 36.6}}
 
 
 def parted(name):
     """bending_C30: bending, _C30; bending: bending, nothing."""
     return (name.removesuffix(LIBRARY), LIBRARY) if name.endswith(LIBRARY) else (name, "")
-
-
-def undamped(name):
-    """shear_damped_C30: shear_C30"""
-    for word in DAMPED:
-        name = name.replace(word, "")
-    return name
 
 
 def rows(folder):
@@ -378,28 +364,10 @@ def drops(records):
     return "\n".join(lines)
 
 
-def damped(records):
-    """Beams of C30 with local damping, beside those without."""
-    found = gathered(records)
-    lines = ["| beam of C30 | elements | no damping [kN] | damping 0.05 | damping 0.3 | reactions alone, 0.3 | formula, f_c with 0.3; without damping | no damping over the latter |", "|---" * 8 + "|"]
-    for name in BEAMS:
-        for elements in STRENGTH[LIBRARY]:
-            values = [found.get((name + word + LIBRARY, str(elements)), {}) for word in ("", *reversed(DAMPED))]
-            if not values[2]:
-                continue
-            usual = against(name + LIBRARY, elements)
-            less = usual if name == "bending" else (shear_niwa if name == "shear" else crushing)(UNDAMPED[elements]) * 1e-3
-            cells = [f"{text(of)}, {100 * (statistics.mean(of) / usual - 1):+.0f} %" if of else "" for of in (*(v.get("largest") for v in values), values[2].get("reaction"))]
-            lines.append(f"| {name} | {elements:,} | {' | '.join(cells)} | {usual:.1f}; {less:.1f} | {100 * (statistics.mean(values[0]['largest']) / less - 1):+.0f} % |")
-    return "\n".join(lines)
-
-
 def markdown(records, which="all"):
     """Tests of the slab's concrete, or of C30 of `breccia materials` ("C30")."""
-    if which == "damped":
-        return damped(records)
     found = {key: values for key, values in gathered(records).items()
-             if key[0] not in DROPS and undamped(key[0]) == key[0] and parted(key[0])[1] == (LIBRARY if which == "C30" else "")}
+             if key[0] not in DROPS and parted(key[0])[1] == (LIBRARY if which == "C30" else "")}
     lines = ["| test | elements | n | here | formula | misfit |", "|---|---|---|---|---|---|"]
     for (name, elements), values in sorted(found.items(), key=lambda item: (list(TESTS).index(item[0][0]), int(item[0][1]))):
         off = 100 * (statistics.mean(values["largest"]) / against(name, int(elements)) - 1)
@@ -408,14 +376,15 @@ def markdown(records, which="all"):
     return "\n".join(lines)
 
 
-def against(name, elements):
-    """Bond stress, load at which slender bars yield, mean of tests in shear, crushing beside bars that yield: from these misfits are counted."""
-    name, concrete = parted(undamped(name))
+def against(name, elements, strength=None):
+    """Bond stress, load at which slender bars yield, mean of tests in shear, crushing beside bars that yield: from these misfits are counted.
+    @param strength  f_c [MPa], of `breccia test` with elements as large where it is left out"""
+    name, concrete = parted(name)
     if name == "pull_out":
         return 13.7
     if name in ("bending", "flow", "tied"):
         return flexure(0.006, USUAL_STRENGTH[concrete]) * 1e-3
-    strength = STRENGTH[concrete][elements]
+    strength = strength or STRENGTH[concrete][elements]
     if name == "plate":
         return crushing(strength, arm=SPAN / 2 - ARM) * 1e-3
     return (shear_niwa if name == "shear" else crushing)(strength) * 1e-3
@@ -423,7 +392,7 @@ def against(name, elements):
 
 def asked(name, elements):
     load = against(name, elements)
-    name, concrete = parted(undamped(name))
+    name, concrete = parted(name)
     usual = USUAL_STRENGTH[concrete]
     if name == "pull_out":
         return f"Model Code 1990 (confined, good bond): 13.7 MPa from 1 to 3 mm; Model Code 2010: 2.5 sqrt(f_cm) = {2.5 * math.sqrt(usual):.1f} MPa"

@@ -15,7 +15,6 @@ import statistics
 import sys
 
 import concrete_tables
-import damped_library
 import damped_links
 import impact_tables
 import ldpm_tables
@@ -114,7 +113,7 @@ def impact(kind):
 MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambda which: library_tables.markdown(lines_of("library"), which),
           "criterion": lambda _: concrete_tables.criterion(lines_of("criterion")), "choice": lambda _: concrete_tables.choice(lines_of("choice")),
           "reinforced": lambda what: reinforced_tests.drops(lines_of("reinforced")) if what == "drops" else reinforced_tests.markdown(lines_of("reinforced"), what),
-          "slip_wear": lambda packings: slip_wear.markdown(slip_wear.with_library(lines_of("slip_wear"), lines_of("library"), lines_of("reinforced")), packings),
+          "slip_wear": lambda packings: slip_wear.markdown(lines_of("slip_wear"), packings),
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
           "published": lambda test: published_tests.markdown(lines_of("published"), test),
@@ -124,7 +123,6 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "misfits": lambda _: misfit_table.markdown(lambda name, what: MAKERS[name](what)),
           "localisation": lambda _: localisation.markdown(lines_of("localisation")),
           "damping": lambda _: damped_links.table(lines_of("damping")),
-          "damped_library": lambda what: damped_library.markdown(lines_of("damped_library"), lines_of("library"), lines_of("reinforced"), what),
           "grips": lambda which: localisation.pulled_table(lines_of("grips"), which)}
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""C30 of `breccia materials` with a smaller slip_wear, in specimens of `breccia test` and beams of reinforced_tests.py, for docs/trials-concrete.md.
+"""C30 as the library had it before its links were damped (`keyed_specimens.LOCAL_C30`), with a smaller slip_wear, in specimens of `breccia test` and beams of reinforced_tests.py, for docs/trials-concrete.md.
 
     scripts/slip_wear.py [--packings 1,2,3] [--elements 1200] [--only TEXT] [--binary build/release/breccia] [--device cpu] [--jobs 1] [--record FILE]
 
-T and C of each set were found by secants, so that prism and tension of packings 1 to 3 (1,200 elements) show what C30 shows on these packings within 1 %; all other
-keys are C30's. --only: tests with it in their name. Results are in out/slip_wear/; called again, only what is missing is run. --record replaces lines of these runs in FILE (docs/results/slip_wear.csv).
+T and C of each set were found by secants with local damping of 0.3, so that prism and tension of packings 1 to 3 (1,200 elements) show what that C30 shows on these packings within 1 %; all other
+keys are its own. --only: tests with it in their name. Results are in out/slip_wear/; called again, only what is missing is run. --record replaces lines of these runs in FILE (docs/results/slip_wear.csv).
 """
 import argparse
 import math
@@ -20,14 +20,15 @@ from library_tables import newman
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "out" / "slip_wear"
 SETS = {(1.0, 30): (2.606, 37.86), (0.5, 30): (2.478, 30.59), (0.3, 30): (2.419, 25.56), (0.3, 20): (2.433, 35.44), (0.1, 30): (2.397, 17.85)}  # slip_wear, phi_i [degrees]: T, C [MPa]
-SPECIMENS = ("tension", "compression_prism", "tension_notched", "brazilian", "bending_plain", "bending_thirds", "platens_prism", "platens_cube", "triaxial_5", "triaxial_20", "oedometer")
+SPECIMENS = ("tension", "compression_prism", "tension_notched", "brazilian", "bending_thirds", "platens_prism", "platens_cube", "triaxial_5", "triaxial_20")
 BEAMS = (("shear", 3900), ("shear", 7800), ("shear", 15600), ("stirrups", 3900), ("stirrups", 15600), ("bending", 3900))
+PRISMS = {3900: 38.6, 7800: 38.0, 15600: 37.3}  # f_c of that C30, with elements as large as those of beams  [MPa]
 RECORD = ["slip_wear", "friction_angle", "elements", "test", "specimen", "commit", "device", "hash", "quantity", "value"]
 
 
 def keys(of):
     tension, cohesion = SETS[of]
-    given = {"slip_wear": of[0], "friction_angle": f'"{of[1]} deg"', "tensile_strength": f"{tension}e6", "cohesion": f"{cohesion}e6"}
+    given = keyed_specimens.LOCAL_C30 | {"slip_wear": of[0], "friction_angle": f'"{of[1]} deg"', "tensile_strength": f"{tension}e6", "cohesion": f"{cohesion}e6"}
     return [part for key, value in given.items() for part in ("--set", f"material.c30.{key}={value}")]
 
 
@@ -68,15 +69,6 @@ def cell(values, digits, wanted=(-math.inf, math.inf), unit=1.0):
     return text + (f" +- {statistics.stdev(values) / unit:.{digits}f}" if len(values) > 1 else " (n = 1)") + (f" (n = {len(values)})" if len(values) == 2 else "")
 
 
-def with_library(lines, library, reinforced):
-    """C30's own lines of docs/results/library.csv and reinforced.csv in the columns of these."""
-    own = {"slip_wear": "1", "friction_angle": "30"}
-    size = {test: "2400" if test == "brazilian" else "1200" for test in SPECIMENS}
-    more = [{**one, **own, "elements": "1200"} for one in library if one["material"] == "C30" and size.get(one["test"]) == one["elements"]]
-    ending = reinforced_tests.LIBRARY
-    return lines + more + [{**one, **own, "test": one["test"].removesuffix(ending), "specimen": one["seed"]} for one in reinforced if one["test"].endswith(ending)]
-
-
 def markdown(lines, which):
     """@param which  packings, as "1 2 3" """
     found = gathered(lines, {int(word) for word in which.split()})
@@ -94,7 +86,7 @@ def markdown(lines, which):
         loads = values(of, test, "largest", elements)
         if not loads:
             return ""
-        off = 100 * (statistics.mean(loads) / reinforced_tests.against(test + reinforced_tests.LIBRARY, elements) - 1)
+        off = 100 * (statistics.mean(loads) / reinforced_tests.against(test + reinforced_tests.LIBRARY, elements, PRISMS[elements]) - 1)
         return cell(loads, 1) + (f", **{off:+.0f} %**" if abs(off) > 15 else f", {off:+.0f} %")
 
     def triaxial(of, pressure):
@@ -107,18 +99,12 @@ def markdown(lines, which):
             *((f"{names[test]}, {elements:,} [kN]; misfit", lambda of, test=test, elements=elements: beam(of, test, elements)) for test, elements in BEAMS),
             ("disc of 2,400 over f_t (1.0 to 1.15)", lambda of: over(of, "brazilian", "tension", 2, (1.0, 1.15))),
             ("plain beam over f_t, two lines of load (1.66)", lambda of: over(of, "bending_thirds", "tension", 2, (1.58, 1.74))),
-            ("one line (some 1.88)", lambda of: over(of, "bending_plain", "tension", 2, (1.79, 1.97))),
             ("rough cube over rough prism (1.15 to 1.30)", lambda of: over(of, "platens_cube", "platens_prism", 2, (1.15, 1.30))),
             ("rough prism over smooth prism (1.0 to 1.05)", lambda of: over(of, "platens_prism", "compression_prism", 2, (1.0, 1.05))),
             ("left of f_c at 3 times the strain of its peak (0.1 to 0.2)", lambda of: cell(values(of, "compression_prism", "residual"), 3, (0.1, 0.2))),
-            ("strain of the peak, prism [1e-3] (2.2)", lambda of: cell(values(of, "compression_prism", "peak_strain"), 2, (1.9, 2.2))),
             ("G_F of the notched prism [J/m2] (141)", lambda of: cell(values(of, "tension_notched", "fracture_energy"), 0, (127, 155))),
-            ("E [GPa] (33.6); nu (0.2)", lambda of: "; ".join((cell(values(of, "compression_prism", "young"), 1), cell(values(of, "compression_prism", "poisson"), 3)))),
-            ("s1 at 5 MPa [MPa]; over Newman", lambda of: triaxial(of, 5)), ("at 20 MPa; over Newman", lambda of: triaxial(of, 20)),
-            ("oedometer: strain at 1 GPa [%] (8 to 10)", lambda of: cell(values(of, "oedometer", "strain_1000"), 1, (8, 10))),
-            ("its tangent at 0.8 GPa [GPa]", lambda of: cell(values(of, "oedometer", "tangent_800"), 1)),
-            ("lateral over axial stress at 1 GPa (0.4 to 0.6)", lambda of: cell(values(of, "oedometer", "side_ratio"), 2, (0.4, 0.6)))]
-    out = ["| slip_wear, phi_i | " + " | ".join(f"{of[0]:g}, {of[1]}" + (" (library)" if of == (1.0, 30) else "") for of in sets) + " |", "|---" * (len(sets) + 1) + "|"]
+            ("s1 at 5 MPa [MPa]; over Newman", lambda of: triaxial(of, 5)), ("at 20 MPa; over Newman", lambda of: triaxial(of, 20))]
+    out = ["| slip_wear, phi_i | " + " | ".join(f"{of[0]:g}, {of[1]}" + (" (C30_local)" if of == (1.0, 30) else "") for of in sets) + " |", "|---" * (len(sets) + 1) + "|"]
     for words, of_set in rows:
         cells = [of_set(of) for of in sets]
         if any(cells):

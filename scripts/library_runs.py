@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Concretes of `breccia materials` in two tests that `breccia test` does not have, for docs/validation-concrete.md.
+"""Concretes of `breccia materials` in specimens of `breccia test` and in two tests that it does not have, for docs/validation-concrete.md and docs/laboratory.md.
 
-    scripts/library_long.py [--concretes C40,C60] [--seeds 5,6,7] [--elements 1200,2400] [--binary build/release/breccia] [--jobs 1] [NAME...]
-    NAME: prism_long oedometer_unload; elements: of a prism of 0.1 x 0.1 x 0.2 m, half as many in the oedometer's cube of 0.1 m
+    scripts/library_runs.py [--concretes C40,C60] [--packings 5,6,7] [--elements 1200,2400] [--binary build/release/breccia] [--device cpu] [--jobs 1] [--record FILE] [NAME...]
+    NAME: a test of `breccia test`, prism_long, oedometer_unload; elements: of a prism of 0.1 x 0.1 x 0.2 m, half as many in the oedometer's cube of 0.1 m
 
 prism_long        the prism of `breccia test` with smooth ends, 0.6/s, to at least 3.1 times the strain of its peak
 oedometer_unload  the oedometer of `breccia test`, 4/s, which lengthens again by 5 % from 8.7 % of strain (of C30: 1 GPa) and is then pressed to 15 %
 
-The concrete "slab" is that of scripts/reinforced_tests.py. Cases and results are in out/library_long/; called again, only what is missing is run.
---record FILE replaces lines of concretes of the library in that file (docs/results/library.csv).
+The library's concretes run without local damping. The concrete "slab" is that of scripts/reinforced_tests.py, with 0.3, in the two tests alone. Cases and results are in out/library_runs/; called again,
+only what is missing is run. --record FILE replaces lines of concretes of the library in that file (docs/results/library.csv).
 """
 import argparse
 import csv
@@ -16,15 +16,16 @@ import math
 import pathlib
 import subprocess
 
+import keyed_specimens
 import published_runs
 import reinforced_tests
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-OUT = ROOT / "out" / "library_long"
+OUT = ROOT / "out" / "library_runs"
 AREA = 0.01  # of both specimens  [m2]
 SLAB = "slab"
-END = {SLAB: 9e-3, "C20": 9e-3, "C30": 9e-3, "C40": 11e-3, "C60": 14e-3, "C100": 17e-3}  # of the long prism  [s]
-RECORD = ["material", "elements", "test", "specimen", "quantity", "unit", "value"]
+END = {SLAB: 9e-3, "C20": 9e-3, "C30": 10e-3, "C40": 12e-3, "C60": 14.5e-3, "C100": 18.5e-3}  # of the long prism  [s]
+RECORD = ["material", "elements", "test", "specimen", "commit", "hash", "quantity", "unit", "value"]
 
 
 def material(concrete):
@@ -35,7 +36,7 @@ def material(concrete):
 
 
 def head(title, seed, end, step, concrete, size, count):
-    return (f'breccia = 1\nmethod = "dem3d"\ntitle = "{title}"\nseed = {seed}\nlocal_damping = 0.3\n\n[time]\nend = {end}\n\n[output]\nframes = 0\nhistory = {step}\n'
+    return (f'breccia = 1\nmethod = "dem3d"\ntitle = "{title}"\nseed = {seed}\nlocal_damping = {0.3 if concrete == SLAB else 0.0}\n\n[time]\nend = {end}\n\n[output]\nframes = 0\nhistory = {step}\n'
             f'fields = false\npictures = false\n\n[energy]\nstop = 0.1\n\n[search]\nmargin = 0.5\n\n[links]\nrange = 1.443\n\n[contact]\nlaw = "linear"\n\n'
             + material(concrete) + f'[[body]]\nname = "specimen"\nshape = "box"\nmaterial = "c30"\nsize = {size}\n'
             f'pack = {{ count = {count}, size_ratio = 2.0, compactness = 0.56 }}\n')
@@ -129,48 +130,51 @@ def of_oedometer(folder):
 MEASURES = {"prism_long": of_prism, "oedometer_unload": of_oedometer}
 
 
-def run(name, concrete, elements, seed, binary):
-    stem = f"{name}-{concrete}-{elements}-{seed}"
-    case, folder, made = OUT / f"{stem}.toml", OUT / stem, TESTS[name](concrete, elements, seed)
+def run(name, concrete, elements, packing, given):
+    stem = f"{name}-{concrete}-{elements}-{packing}"
+    if name not in TESTS:
+        keyed_specimens.make(OUT / stem, concrete, [], name, elements, packing, given)
+        return
+    case, folder, made = OUT / f"{stem}.toml", OUT / stem, TESTS[name](concrete, elements, packing)
     if not (folder / "summary.json").exists() or not case.exists() or case.read_text() != made:
         case.write_text(made)
-        done = subprocess.run([binary, "run", case, "-o", folder, "--threads", "1", "--force", "--no-progress"], stdout=subprocess.DEVNULL)
+        done = subprocess.run([given.binary, "run", case, "-o", folder, "--threads", "1", "--device", given.device, "--force", "--no-progress"], stdout=subprocess.DEVNULL)
         if done.returncode not in (0, 9):
             raise SystemExit(f"{case} ended with {done.returncode}")
 
 
 def collected():
-    """A line for each quantity of each finished run in out/library_long."""
-    for case in sorted(OUT.glob("*.toml")):
-        name, concrete, elements, seed = case.stem.split("-")
-        if (OUT / case.stem / "summary.json").exists():
-            for (quantity, unit), value in MEASURES[name](OUT / case.stem).items():
-                yield dict(zip(RECORD, (concrete, elements, name, seed, quantity, unit, f"{value:.9g}")))
+    """A line for each quantity of each finished run in out/library_runs."""
+    for folder in sorted(path for path in OUT.iterdir() if path.is_dir()):
+        name, concrete, elements, packing = folder.name.split("-")
+        summary = keyed_specimens.summary_of(folder)
+        if not summary:
+            continue
+        found = MEASURES[name](folder) if name in TESTS else keyed_specimens.shown(folder)
+        made = max(int(elements), 2400) if name == "brazilian" else elements  # a disc has at least so many
+        for (quantity, unit), value in found.items():
+            yield dict(zip(RECORD, (concrete, str(made), name, packing, summary["breccia"]["commit"], summary["state_hash"], quantity, unit, f"{value:.9g}")))
 
 
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("names", nargs="*", default=list(TESTS))
     p.add_argument("--concretes", default="C30")
-    p.add_argument("--seeds", default="5,6,7")
+    p.add_argument("--packings", default="5,6,7")
     p.add_argument("--elements", default="1200")
     p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
+    p.add_argument("--device", default="cpu")
     p.add_argument("--jobs", type=int, default=1)
     p.add_argument("--record", type=pathlib.Path)
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
-    published_runs.run_all(given.jobs, run, [(name, concrete, int(elements), int(seed), given.binary) for name in given.names for concrete in given.concretes.split(",")
-                                             for elements in given.elements.split(",") for seed in given.seeds.split(",")])
+    published_runs.run_all(given.jobs, run, [(name, concrete, int(elements), int(packing), given) for name in given.names for concrete in given.concretes.split(",")
+                                             for elements in given.elements.split(",") for packing in given.packings.split(",")])
     records = list(collected())
     for one in records:
         print(",".join(one.values()))
     if given.record:
-        run_of = ("material", "elements", "test", "specimen")
-        records = [one for one in records if one["material"] != SLAB]
-        here = {tuple(one[k] for k in run_of) for one in records}
-        with open(given.record, newline="") as file:
-            others = [one for one in csv.DictReader(file) if tuple(one[k] for k in run_of) not in here]
-        published_runs.write_record(given.record, RECORD, others + records)
+        published_runs.merge_record(given.record, RECORD, [one for one in records if one["material"] != SLAB], RECORD[:4])
 
 
 if __name__ == "__main__":
