@@ -1,6 +1,7 @@
 // A step by loops on the host: over packs of elements and links, shared by threads.
 
 #include <algorithm>
+#include <memory>
 
 #include "dem/ranks.hpp"
 #include "dem/stepping/launches.hpp"
@@ -52,21 +53,41 @@ void fetch(const ConcreteLinkForces<Number>& links, Index from, Index to) {
   }
 }
 
-/// Forces of links [begin, end) and their sums, in portions whose actions stay in the nearest
-/// cache.
+/// Actions of links of a group that filled up the last pack of a tile; the next tile adds them.
 template <class Number>
-void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index end,
-               const AddLinks& add) {
+struct Ahead {
+  static constexpr Index room = 15;  // of the widest pack, its first link apart
+  Index begin = 0, end = 0;          ///< links
+  PairForceOf<StoredAs<Number>> actions[room];
+};
+
+/// Forces of links [begin, end) and their sums, in portions whose actions stay in the nearest
+/// cache. Links are computed by whole packs, up to `last`, so that groups may have few links in a
+/// tile; they are added in the order of tiles.
+template <class Number>
+void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index end, Index last,
+               Ahead<Number>& ahead, const AddLinks& add) {
   constexpr Index portion = 64;
-  alignas(64) PairForceOf<StoredAs<Number>> actions[portion];
+  const Index width = pack_width<ConcreteLinkForces<Number>>(lanes);
+  alignas(64) PairForceOf<StoredAs<Number>> actions[portion + Ahead<Number>::room];
   links.actions.data = actions;
-  links.actions.size = portion;
+  links.actions.size = portion + Ahead<Number>::room;
   for (Index from = begin; from < end;) {
     const Index to = std::min(from / portion * portion + portion, end);  // whole packs, aligned
+    const Index filled = std::min((to + width - 1) / width * width, last);
     links.first_action = -from;
     fetch(links, to, std::min(to + portion, end));
-    run_packs(lanes, links, from, to);
+    Index next = from;  // the first that is not computed
+    if (ahead.end > from) {
+      next = ahead.end;
+      std::copy(ahead.actions + (from - ahead.begin), ahead.actions + (ahead.end - ahead.begin),
+                actions);
+    }
+    if (next < filled) run_packs(lanes, links, next, filled);
     run_adding(lanes, add, links, from, to, actions);
+    ahead.begin = to;
+    ahead.end = std::max(filled, next);
+    std::copy(actions + (to - from), actions + (ahead.end - from), ahead.actions);
     from = to;
   }
 }
@@ -129,13 +150,15 @@ void link_forces_and_sums(World& w) {
       AddLinks add{gather.sums, link_plan.first_private[run], link_plan.begin[run + 1],
                    link_plan.reach, link_plan.deferred[run]};
       add.deferred.clear();
+      const auto ahead = std::make_unique_for_overwrite<Ahead<Number>[]>(kernels.size());
       auto tile =
           std::lower_bound(link_plan.tiles.begin(), link_plan.tiles.end(), link_plan.begin[run]);
       for (; *tile < link_plan.begin[run + 1]; ++tile) {
         const Index from = *tile, to = *(tile + 1);
         for (std::size_t g = 0; g < kernels.size(); ++g) {
           const Index* const starts = w.concrete.groups[g].starts.data();
-          add_links(w.lanes, kernels[g], starts[from], starts[to], add);
+          add_links(w.lanes, kernels[g], starts[from], starts[to], starts[link_plan.begin[run + 1]],
+                    ahead[g], add);
         }
         for (std::size_t g = 0; g < of_facets.size(); ++g) {
           const Index* const starts = w.ldpm.groups[g].starts.data();

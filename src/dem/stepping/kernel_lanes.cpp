@@ -7,8 +7,7 @@ template <class Kernel>
 void run_packs([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
 #if defined(BR_WIDE_LANES)
   if constexpr (requires { Kernel::swept; })  // to where packs lie in whole cache lines
-    for (const Index width = static_cast<Index>(lanes) * (is_single<ItemOf<Kernel>> ? 2 : 1);
-         begin < end && begin % width != 0; ++begin)
+    for (const Index width = pack_width<Kernel>(lanes); begin < end && begin % width != 0; ++begin)
       kernel(begin);
 #endif
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);

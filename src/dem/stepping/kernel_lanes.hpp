@@ -8,6 +8,11 @@
 
 namespace breccia::dem {
 
+/// Links of a whole pack.
+template <class Kernel>
+Index pack_width(Lanes lanes) {
+  return static_cast<Index>(lanes) * (is_single<ItemOf<Kernel>> && lanes != Lanes::one ? 2 : 1);
+}
 /// kernel for the links [begin, end) on the calling thread.
 template <class Kernel>
 void run_packs(Lanes lanes, const Kernel& kernel, Index begin, Index end);

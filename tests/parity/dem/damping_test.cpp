@@ -24,6 +24,16 @@ TEST(DampingBits, are_the_same_on_threads_packs_and_in_the_shadow_space_with_til
   slab().expect_same_on_threads_packs_and_in_the_shadow_space({0, 5});
 }
 
+/// Each class of links of its fabric is a group of its own, with few links in a tile of the host.
+TEST(DampingBits, are_the_same_for_concrete_of_the_library_in_many_groups) {
+  for (const char* const precision : {"double", "mixed", "single"}) {
+    const testing::SmallSlabRuns library(
+        {"material.c30.use=C30", std::string("precision=") + precision});
+    EXPECT_GT(library.world().concrete.groups.size(), 16U);
+    library.expect_same_on_threads_packs_and_in_the_shadow_space();
+  }
+}
+
 TEST(DampingBits, are_the_same_on_ranks) {
   slab().expect_same_on_ranks(
       [](const dem::World& w) -> const auto& { return w.concrete.branch_normal; });
