@@ -34,7 +34,7 @@ OUT = ROOT / "out" / "published"
 # ---------------------------------------------------------------- spalling
 
 RADIUS, LENGTH, SLICE, RISE = 0.02, 0.12, 0.01, 12e-6  # m, m, m, s
-STATIC = 3.62e6  # Pa, direct tension of C40 on packings it was not calibrated on: docs/laboratory.md
+STATIC = 3.55e6  # Pa, direct tension of C40 on packings it was not calibrated on: docs/laboratory.md
 STRENGTH = 42e6  # Pa, f_c of the micro-concrete that was tested
 
 
@@ -223,7 +223,7 @@ def row_of_falls(falls):
     borne = {setting["sides"]: [max(one) for one in felt_by(found)] for setting, found in falls}
     return ("falling weight, 300 kg, 1 to 4.5 m/s, slab of 0.18 m with one mat (Kishi 2010)", "by the authors' summary slabs bear about as much on both; forces not at hand",
             f"largest reaction {spread(borne[4], 0, 1e-3)} kN on four sides, {spread(borne[2], 0, 1e-3)} kN on two", f"**two sides over four {100 * (statistics.mean(borne[2]) / statistics.mean(borne[4]) - 1):+.0f} %**",
-            "believed inertia: pressed slowly both bear the same (next line)")
+            "believed inertia in part: pressed slowly slabs on two sides bear less, too (next line)")
 
 
 def row_of_pushes(pushes):
@@ -232,7 +232,7 @@ def row_of_pushes(pushes):
     if {4, 2} <= load.keys():
         over = {sides: 100 * (statistics.mean(of) / CODE_OF_THE_PAPER - 1) for sides, of in load.items()}
         yield ("the same slab pressed slowly by a disc of 90 mm", f"{CODE_OF_THE_PAPER / 1e3:.1f} kN by the code; by the authors' summary about as much on both",
-               f"{spread(load[4], 0, 1e-3)} kN on four sides, {spread(load[2], 0, 1e-3)} kN on two", f"**{over[4]:+.0f} % on four sides, {over[2]:+.0f} % on two**; two over four {100 * (statistics.mean(load[2]) / statistics.mean(load[4]) - 1):+.0f} %", "believed, not tested: links that have softened keep too little (0.10 f_c at three times the strain of the peak), so that the cone of punching does not bear all around at once; finer elements do not change it (below)")
+               f"{spread(load[4], 0, 1e-3)} kN on four sides, {spread(load[2], 0, 1e-3)} kN on two", f"{over[4]:+.0f} % on four sides, **{over[2]:+.0f} % on two**; two over four {100 * (statistics.mean(load[2]) / statistics.mean(load[4]) - 1):+.0f} %", "not known (below)")
 
 
 def summary(records):
@@ -259,8 +259,8 @@ def summary(records):
     over = {rate: strength / pressed_at[5] for rate, strength in pressed_at.items()}
     low = [over[rate] / model_code_90(rate) - 1 for rate in over if rate > 5]
     rows.append(("compression between Hopkinson bars, 5 to 500/s (CEB-FIP 1990's curve of such tests; Hentz 2004: no law of rate is needed)", f"{ends([model_code_90(r) for r in over])} f_c",
-                 f"{ends(over.values())} f_c without a law of rate", f"**{100 * (1 / model_code_90(5) - 1):+.0f} % at 5/s**, {' to '.join(f'{100 * v:+.0f}' for v in (max(low), min(low)))} % above",
-                 "inertia alone: below 30/s experiments gain by water and by cracks that cannot keep up, which is not in the model"))
+                 f"{ends(over.values())} f_c without a law of rate", f"**{100 * (1 / model_code_90(5) - 1):+.0f} % at 5/s**, **{' to '.join(f'{100 * v:+.0f}' for v in (max(low), min(low)))} % above**",
+                 "inertia alone: experiments gain by water and by cracks that cannot keep up, too, which is not in the model"))
     spalls = [(statistics.mean(found["rate"]), statistics.mean(found["strength"]) / STATIC) for _, found in of("spall", rate="malvar_ross")]
     rows.append((f"spalling, {min(r for r, _ in spalls):.0f} to {max(r for r, _ in spalls):.0f}/s (Malvar and Ross' curve of such tests)", f"{ends([malvar_ross(r) for r, _ in spalls])} f_t",
                  f"{ends([s for _, s in spalls])} f_t with `rate = \"malvar_ross\"`", off([s / malvar_ross(r) - 1 for r, s in spalls]), "links soften and share the load before planes open"))
@@ -272,12 +272,7 @@ def markdown(records, test):
     if test == "summary":
         return summary(records)
     of = [one for one in records if one["test"] == test]
-    if not of:
-        return ""
-    if test in ("fall", "push"):  # by several machines, the time is told in the text
-        return "\n".join(TESTS[test][3](of))
-    cost = {(one["setting"], one["seed"]): float(one["seconds"]) for one in of}
-    return "\n".join([*TESTS[test][3](of), "", f"{len(cost)} runs, {sum(cost.values()):.0f} s of one core in all, {max(cost.values()):.0f} s the longest."])
+    return "\n".join(TESTS[test][3](of)) if of else ""
 
 
 def run(test, setting, seed, given):
@@ -332,7 +327,7 @@ def plot_hopkinson(plt, records, folder):
                       label=f"{setting['rate']}/s" if not k else None)
         left.axhline(1e-6 * slow * model_code_90(setting["rate"]), color=color, lw=1, ls="--")
         right.plot([setting["rate"]] * len(values["strength"]), [s / slow for s in values["strength"]], "o", ms=4, color=color, label="here, a packing each" if setting["rate"] == 5 else None)
-    left.plot([], [], "k--", lw=1, label="38 MPa times the code's curve")
+    left.plot([], [], "k--", lw=1, label=f"{1e-6 * slow:.0f} MPa times the code's curve")
     rates = [1, 3, 10, 30, 100, 300, 600]
     right.plot(rates, [model_code_90(r) for r in rates], "k--", lw=1, label="CEB-FIP 1990, 48 MPa")
     right.set(xscale="log", xlabel="strain rate, 1/s", ylabel="strength over that at rest (here: at 5/s)")
