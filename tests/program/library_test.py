@@ -37,7 +37,8 @@ class Library(unittest.TestCase):
         compared = {key: value for key, value in recorded.items() if key in shown}
         self.assertEqual({test for test, _ in compared}, set(tests))
         for key, value in compared.items():
-            self.assertTrue(math.isclose(shown[key], value, rel_tol=1e-6), f"{key}: {shown[key]} for {value}")
+            same = math.isclose(shown[key], value, rel_tol=1e-6) or (math.isnan(shown[key]) and math.isnan(value))  # a cube that did not get to three times its strain
+            self.assertTrue(same, f"{key}: {shown[key]} for {value}")
 
 
 if __name__ == "__main__":
