@@ -226,7 +226,7 @@ struct ConcreteLinkForces {
   BR_WHOLE BR_HD void operator()(Index i) const { run_at<Item>(*this, i); }
 
  private:
-  /// What response() does to an idle link.
+  /// Stores and writes as response() does for an idle link.
   template <ConcreteParts parts, class R>
   BR_HD void leave_idle(const Law& by, Index i, const LinkConstants<R>& link, const R& distance,
                         const R& kept) const {
