@@ -213,18 +213,38 @@ class Findings {
     return broken;
   }
 
-  std::string unbroken() const {
+  std::string unbroken() {
     const double fracture = record_.number("energy.fracture").value_or(0.0);
     std::string text = fmt::format("Nothing broke: all {} are whole", count_of(all_, what_));
-    text += fracture > 0.0 ? fmt::format(", though {} went into softening",
-                                         value_text(fracture, energy_unit()))
-                           : std::string(" and none has softened");
-    return text + ".";
+    if (!(fracture > 0.0)) return text + " and none has softened.";
+    const std::string spent = value_text(fracture, energy_unit());
+    if (!find_softened()) return text + fmt::format(", though {} went into softening.", spent);
+    return fmt::format(
+        "A crack has begun that parts nothing yet: of {}, none broke to its end, but {} went into "
+        "softening, and those around {} have lost {} of what they bear, on the mean.",
+        count_of(all_, what_), spent, place_text(softened_at_, first_->plane),
+        softened_ < 0.995 ? percent_text(softened_) : "nearly all");
+  }
+
+  /// Where spheres stand at the end whose links have lost most. @returns whether that is much
+  bool find_softened() {
+    constexpr double much = 0.5;
+    if (!first_ || !first_->spheres() || cut_ > 0.0) return false;
+    const Shot last = read(record_.times.size() - 1);
+    const FrameField* const damage = field_named(last.element_fields, "damage");
+    if (damage == nullptr) return false;
+    for (std::size_t e = 0; e < last.elements(); ++e)
+      if (last.radius[e] > 0.0 && damage->values[e] > softened_) {
+        softened_ = damage->values[e];
+        softened_at_ = last.corner[e];
+      }
+    cracked_ = softened_ >= much;
+    return cracked_;
   }
 
   /// How near to breaking.
   std::string nearness() const {
-    if (!first_) return "";
+    if (!first_ || cracked_) return "";
     Use use;
     const std::size_t frames = record_.times.size(), looks = std::min<std::size_t>(frames, 9);
     for (std::size_t k = 1; k <= looks; ++k) {
@@ -441,6 +461,9 @@ class Findings {
   double all_ = 0.0;
   std::vector<std::uint8_t> parted_;  ///< lines that are broken at the start; cut_: how many
   double cut_ = 0.0;
+  bool cracked_ = false;   ///< links have softened much, and none has broken
+  double softened_ = 0.0;  ///< what those of the element have lost at the end that lost most  [-]
+  Vec3 softened_at_;       ///< where it is  [m]
   std::string what_;
   std::optional<Shot> first_;
   bool looked_for_break_ = false;

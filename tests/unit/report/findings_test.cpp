@@ -95,6 +95,35 @@ TEST(Findings, AnUnbrokenChainTellsHowNearItCame) {
   EXPECT_NE(text.find("2 times the load begins to break it"), std::string::npos) << text;
 }
 
+/// A specimen may be torn through while each link still bears a little.
+TEST(Findings, LinksThatHaveSoftenedMuchAreACrack) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path(), 8, 99);
+  const std::string path = folder.path() + "/summary.json";
+  test::write_text(path, R"({"energy": {"fracture": 1.5}, "status": "done",
+  "method": "dem3d", "model": {"elements": 8, "links": 7}, "fracture": {"broken_links": 0}})");
+  for (const float lost : {0.3F, 0.9F}) {
+    ParaviewSeries series(folder.path());
+    for (int k = 0; k < 3; ++k) {
+      Frame frame = test::chain_frame(k, 8, 99);
+      if (k == 2) frame.point_fields[2].values[5] = lost;
+      series.write(frame);
+    }
+    series.finish();
+    const std::string text = joined(findings_of(read_record(folder.path())));
+    EXPECT_EQ(
+        text.find("Nothing broke: all 7 links are whole, though 1.5 J went into softening.") ==
+            std::string::npos,
+        lost > 0.5F)
+        << text;
+    EXPECT_EQ(
+        text.find("of 7 links, none broke to its end, but 1.5 J went into softening, and those "
+                  "around (102, 2, 0) mm have lost 90 % of what they bear") != std::string::npos,
+        lost > 0.5F)
+        << text;
+  }
+}
+
 /// Frames give spheres of bodies that a stage has taken out the radius 0: the tension was "inf".
 TEST(Findings, LinksOfBodiesThatAreGoneBearNothing) {
   const ScratchFolder folder;
