@@ -98,11 +98,9 @@ def table(records):
 
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
     p.add_argument("-o", "--out", type=pathlib.Path, default=ROOT / "out/damped_links")
-    p.add_argument("--jobs", type=int, default=1)
     p.add_argument("--only", default="", help="settings that have this in their text")
-    p.add_argument("--record", type=pathlib.Path)
+    published_runs.add_options(p, device=False)
     given = p.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     case = given.out / "c30.toml"

@@ -1,6 +1,7 @@
 """Runs of scripts that compare with published tests: several at a time, and their numbers as a table."""
 import concurrent.futures
 import csv
+import pathlib
 
 
 def run_all(jobs, run, each):
@@ -35,3 +36,12 @@ def merge_record(path, fields, records, run_of):
             before = [one for one in csv.DictReader(file) if tuple(one[key] for key in run_of) not in made]
     write_record(path, fields, before + records)
     return before + records
+
+
+def add_options(parser, device=True):
+    """Options of scripts that make runs and record them."""
+    parser.add_argument("--binary", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent / "build/release/breccia")
+    if device:
+        parser.add_argument("--device", default="cpu")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--record", type=pathlib.Path)

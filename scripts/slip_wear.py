@@ -117,10 +117,7 @@ def main():
     p.add_argument("--packings", default="1,2,3")
     p.add_argument("--elements", type=int, default=1200)
     p.add_argument("--only", default="")
-    p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
-    p.add_argument("--device", default="cpu")
-    p.add_argument("--jobs", type=int, default=1)
-    p.add_argument("--record", type=pathlib.Path)
+    published_runs.add_options(p)
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
     jobs = [(of, test, elements, int(packing), given) for packing in given.packings.split(",") for of in SETS
