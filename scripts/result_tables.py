@@ -14,6 +14,7 @@ import re
 import statistics
 import sys
 
+import beyond_peak
 import concrete_tables
 import damped_links
 import impact_tables
@@ -122,6 +123,7 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "rocks": lambda which: rock_library.recovery_table(lines_of("rocks"), which),
           "misfits": lambda _: misfit_table.markdown(lambda name, what: MAKERS[name](what)),
           "localisation": lambda _: localisation.markdown(lines_of("localisation")),
+          "beyond_peak": lambda which: beyond_peak.markdown(lines_of("beyond_peak"), which),
           "damping": lambda _: damped_links.table(lines_of("damping")),
           "grips": lambda which: localisation.pulled_table(lines_of("grips"), which)}
 
