@@ -65,8 +65,24 @@ def drawn(count=60):
 
 SPECIMENS = ("prism", "triaxial_5", "tension", "triaxial_20", "platens_prism", "tension_notched")
 WHOLE = (*SPECIMENS, "platens_cube", "compression_cube", "compression_prism", "brazilian", "bending_thirds", "oedometer", "triaxial_50", "triaxial_100")
-CALIBRATED = {}
-GROUPS = {"alone": (ALONE, SPECIMENS[:3]), "beside": ({name: HALF | keys for name, keys in BESIDE.items()}, SPECIMENS), "drawn": (drawn(), SPECIMENS), "calibrated": (CALIBRATED, WHOLE)}
+
+
+def kept(use, end, tension, cohesion, **keys):
+    """A calibrated set: its concrete, how long its prism is pressed [ms], T and C [MPa]."""
+    return {"use": use, "end": end, "tensile_strength": round(tension * 1e6, 3), "turn_wear": 0.0, **keys, "cohesion": round(cohesion * 1e6, 3)}
+
+
+CALIBRATED = {"C30 turn_wear 0": kept("C30", 12.0, 2.432, 30.47), "C30 turn_wear 0.004": kept("C30", 12.0, 2.432, 30.53, turn_wear=0.004),
+              "C30 turn_wear 0, slip_wear 0.1": kept("C30", 12.0, 2.384, 17.29, slip_wear=0.1), "C30 turn_wear 0, eta_b 0.3, mu_b 0.3": kept("C30", 12.0, 2.432, 30.47, broken_rolling_limit=0.3, broken_friction=0.3),
+              "C30 turn_wear 0, link_damping_time 1": kept("C30", 12.0, 2.415, 26.88, link_damping_time=1.0), "C30 turn_wear 0, Y_c 40 MPa": kept("C30", 12.0, 2.432, 29.81, compaction_strength=40.2e6),
+              "C30 turn_wear 0, Y_c 25 MPa": kept("C30", 12.0, 2.433, 29.70, compaction_strength=25e6),
+              "C30 turn_wear 0, Y_c 40 MPa, slip_wear 0.1, link_damping_time 1": kept("C30", 12.0, 2.370, 16.53, slip_wear=0.1, compaction_strength=40.2e6, link_damping_time=1.0),
+              "C20 turn_wear 0": kept("C20", 11.0, 1.719, 21.13), "C40 turn_wear 0": kept("C40", 14.0, 3.049, 39.40), "C60 turn_wear 0": kept("C60", 17.0, 3.790, 62.74), "C100 turn_wear 0": kept("C100", 21.0, 4.380, 111.8),
+              "C60 turn_wear 0, Y_c 72 MPa": kept("C60", 17.0, 3.790, 63.01, compaction_strength=72e6), "C100 turn_wear 0, Y_c 114 MPa": kept("C100", 21.0, 4.380, 110.5, compaction_strength=114.3e6)}
+COMPACTION = {"Y_c 70.6 MPa": {}, "Y_c 30 MPa": {"compaction_strength": 30e6}, "Y_c 20 MPa": {"compaction_strength": 20e6}, "Y_c 12 MPa": {"compaction_strength": 12e6},
+              "Y_c 20 MPa, H_c 0.7": {"compaction_strength": 20e6, "compaction_slope": 0.7}, "Y_c 12 MPa, H_c 0.7": {"compaction_strength": 12e6, "compaction_slope": 0.7}, "Y_c 20 MPa, H_c 0.1": {"compaction_strength": 20e6, "compaction_slope": 0.1}}
+GROUPS = {"alone": (ALONE, SPECIMENS[:3]), "beside": ({name: HALF | keys for name, keys in BESIDE.items()}, SPECIMENS), "drawn": (drawn(), SPECIMENS), "calibrated": (CALIBRATED, WHOLE),
+          "compaction": ({name: {"turn_wear": 0.0, "cohesion": 30e6} | keys for name, keys in COMPACTION.items()}, (*SPECIMENS[:4], "oedometer", "triaxial_100"))}
 
 
 # ---------------------------------------------------------------- runs
@@ -151,6 +167,9 @@ COLUMNS = (("f_c, MPa", ("prism", "strength"), 1, None), ("strain there, 1e-3", 
 MORE = (("20 MPa add", ("slope_20", ""), 2, None), ("rough over smooth prism (1.0 to 1.05)", ("rough_over", ""), 2, (1.0, 1.05)), ("left, rough (0.1 to 0.2)", ("platens_prism", "residual"), 2, (0.1, 0.2)), ("G_F, J/m2", ("tension_notched", "fracture_energy"), 0, None))
 
 
+PRESSED = (("20 MPa add", ("slope_20", ""), 2, None), ("s1 at 100 MPa, MPa", ("triaxial_100", "strength"), 0, None), ("oedometer: strain at 0.1 GPa, %", ("oedometer", "strain_100"), 2, None), ("at 1 GPa, %", ("oedometer", "strain_1000"), 1, None))
+
+
 def cell(of, digits, wanted):
     values = list(of.values())
     if not values:
@@ -162,7 +181,7 @@ def cell(of, digits, wanted):
 
 
 def one_by_one(lines, group):
-    found, columns = numbers_of(lines, group), COLUMNS + (MORE if group == "beside" else ())
+    found, columns = numbers_of(lines, group), COLUMNS + {"beside": MORE, "compaction": PRESSED}.get(group, ())
     out = ["| " + " | ".join(("600 elements", "n", *(column[0] for column in columns))) + " |", "|---" * (len(columns) + 2) + "|"]
     for name in GROUPS[group][0]:
         if name in found:
@@ -220,9 +239,8 @@ def calibrated(lines, which):
     for one in [*old, *(one for one in lines if one["group"] == "calibrated" and one["elements"] == "1200")]:
         if math.isfinite(float(one["value"])):
             found.setdefault(one["set"], {}).setdefault((one["test"], one["quantity"]), {})[one["specimen"]] = float(one["value"])
-    concretes = which.split()
-    sets = [concretes[0], *(name for name in CALIBRATED if name in found)] if len(concretes) == 1 else concretes
-    sets = [name for name in sets if len(concretes) > 1 or CALIBRATED.get(name, {}).get("use", "C30") == concretes[0]]
+    sets = [name for name in CALIBRATED if name in found and (CALIBRATED[name]["use"] == which or which == "all")]
+    sets = [which, *sets] if which != "all" else sorted((name for name in sets if name.endswith("turn_wear 0") or name[:3] in ("C60", "C10")), key=lambda name: int(name[1:].split()[0]))
 
     def over(test, below, quantity="strength"):
         def of(name):
@@ -245,6 +263,12 @@ def calibrated(lines, which):
             return f"{cell(s1, 0, None)}, {100 * (statistics.mean(s1.values()) / newman(statistics.mean(f_c.values()), pressure) - 1):+.0f} %" if s1 and f_c else ""
         return of
 
+    def against(test, target, digits):
+        def of(name):
+            values, asked = found[name].get((test, "strength"), {}), targets_of(CALIBRATED.get(name, {}).get("use", name))[target]
+            return f"{cell(values, digits, None)}, {100 * (statistics.mean(values.values()) / asked - 1):+.1f} %" if values else ""
+        return of
+
     def keys(name):
         keys = CALIBRATED.get(name)
         return ", ".join(f"{keys[key] / 1e6:.4g}" for key in ("tensile_strength", "cohesion")) if keys else "as it is"
@@ -254,7 +278,7 @@ def calibrated(lines, which):
         rule = min(0.7 * targets_of(CALIBRATED.get(name, {}).get("use", name))["compression"] ** 0.31, 2.8)
         return f"{cell(of, 2, None)}, {100 * (statistics.mean(of.values()) / rule - 1):+.0f} %" if of else ""
 
-    rows = [("T, C [MPa]", keys, None, None), ("f_c [MPa]", number("prism"), 1, None), ("f_t [MPa]", number("tension"), 2, None), ("G_F of the notched prism [J/m2]", number("tension_notched", "fracture_energy"), 0, None),
+    rows = [("T, C [MPa]", keys, None, None), ("E [GPa]", number("compression_prism", "young"), 1, None), ("nu", number("compression_prism", "poisson"), 3, None), ("f_c [MPa]; misfit", against("prism", "compression", 1), None, None), ("f_t [MPa]; misfit", against("tension", "tension", 2), None, None), ("G_F of the notched prism [J/m2]", number("tension_notched", "fracture_energy"), 0, None),
             ("left at 3 times the strain of the peak, of f_c (0.1 to 0.2)", number("prism", "residual"), 3, (0.1, 0.2)), ("the same, rough platens (0.1 to 0.2)", number("platens_prism", "residual"), 2, (0.1, 0.2)),
             ("strain at f_c, 1e-3; EN 1992-1-1", strain, None, None), ("strength that 5 MPa add, over 5 MPa (4 to 5)", added(5), 1, (4.0, 5.0)),
             ("s1 at 5 MPa [MPa]; over Newman", confined(5), None, None), ("at 20 MPa; over Newman", confined(20), None, None), ("at 50 MPa", number("triaxial_50"), 0, None), ("at 100 MPa", number("triaxial_100"), 0, None),
@@ -262,17 +286,17 @@ def calibrated(lines, which):
             ("rough cube over rough prism (1.15 to 1.30)", over("platens_cube", "platens_prism"), 2, (1.15, 1.30)), ("disc of 2,400 over f_t (1.0 to 1.15)", over("brazilian", "tension"), 2, (1.0, 1.15)),
             ("plain beam under two lines over f_t (1.66)", over("bending_thirds", "tension"), 2, (1.58, 1.74)), ("oedometer: strain at 0.1 GPa, %", number("oedometer", "strain_100"), 2, None),
             ("at 1 GPa, % (8 to 10)", number("oedometer", "strain_1000"), 1, None), ("lateral over axial stress at 1 GPa (0.4 to 0.6)", number("oedometer", "side_ratio"), 2, (0.4, 0.6))]
-    heads = [name.removeprefix(f"{concretes[0]} ") if len(concretes) == 1 else name for name in sets]
-    out = ["| 1,200 elements | " + " | ".join(heads) + " |", "|---" * (len(sets) + 1) + "|"]
+    heads = ["of the library" if name == which else name.removeprefix(f"{which} ") for name in sets]
+    out = ["| 1,200 elements, n = 3 | " + " | ".join(heads) + " |", "|---" * (len(sets) + 1) + "|"]
     for words, of, digits, wanted in rows:
-        cells = [of(name) if digits is None else cell(of(name), digits, wanted) for name in sets]
+        cells = [of(name) if digits is None else cell(of(name), digits, wanted) + (f" (n = {len(of(name))})" if 0 < len(of(name)) < 3 else "") for name in sets]
         if any(cells):
             out.append(f"| {words} | " + " | ".join(cells) + " |")
     return "\n".join(out)
 
 
 def markdown(lines, which):
-    """`alone`, `beside`, `slopes`, `calibrated CONCRETE`, `calibrated SET SET ...` (sets with _ for blanks)."""
+    """`alone`, `beside`, `compaction`, `slopes`, `calibrated CONCRETE`, `calibrated all`."""
     if which.startswith("calibrated"):
         return calibrated(lines, which.removeprefix("calibrated").strip())
     return slopes(lines) if which == "slopes" else one_by_one(lines, which)

@@ -207,6 +207,27 @@ def pressed(lines, material):
     return table(f"{material}, n = 3; elements in the prism", sizes, rows)
 
 
+def pressed_sizes(lines, materials):
+    """The same of several concretes, side by side, beside Newman's rule alone."""
+    lines = [one for one in lines if one["specimen"] in PAIRED]
+    found, slopes = numbers(lines), paired_slopes(lines)
+    columns = {key[:2]: f"{key[0]}, {key[1]:,}" for key in sorted(found, key=lambda key: (int(key[0][1:]), key[1])) if key[0] in materials and key[2:] == ("triaxial_100", "strength")}
+
+    def cell(test, quantity, digits, unit=1.0):
+        return lambda key: spread(found[*key, test, quantity], digits, unit) if (*key, test, quantity) in found else ""
+
+    def confined(pressure):
+        def of(key):
+            number = found[*key, f"triaxial_{pressure}", "strength"]
+            return f"{spread(number, 0)}, {100 * (number[0] / newman(found[*key, 'compression_prism', 'strength'][0], pressure) - 1):+.0f} %"
+        return of
+
+    rows = [*((f"s1 at {p} MPa, MPa; over Newman", confined(p)) for p in (5, 20)), (SLOPE, lambda key: slope_cell(slopes.get(key))), *((f"at {p} MPa, MPa", cell(f"triaxial_{p}", "strength", 0)) for p in (50, 100)),
+            *((f"strain at s1 at {p} MPa, %", cell(f"triaxial_{p}", "peak_strain", 2, 10.0)) for p in (5, 20, 50, 100)), ("oedometer: strain at 1 GPa, %", cell("oedometer", "strain_1000", 1)),
+            ("its tangent at 0.8 GPa, GPa", cell("oedometer", "tangent_800", 1)), ("lateral over axial stress at 1 GPa (0.4 to 0.6)", cell("oedometer", "side_ratio", 2))]
+    return table("n = 3; elements in the prism", columns, rows)
+
+
 def long_prisms(lines):
     """What is left of prisms beyond their peak, and what links spend by then, concrete by concrete and size by size."""
     found, spent = numbers(lines), ("friction", "plastic", "fracture")
@@ -229,9 +250,10 @@ def long_prisms(lines):
 
 
 def markdown(lines, which):
-    """`all`, `sizes`, `C30` over sizes, `beyond ELEMENTS`, `pressed MATERIAL`, `long prisms`."""
+    """`all`, `sizes`, `C30` over sizes, `beyond ELEMENTS`, `pressed MATERIAL`, `pressed MATERIAL MATERIAL`, `long prisms`."""
     if which.startswith("beyond"):
         return beyond(lines, int(which.split()[1]))
     if which.startswith("pressed"):
-        return pressed(lines, which.split()[1])
+        materials = which.split()[1:]
+        return pressed(lines, materials[0]) if len(materials) == 1 else pressed_sizes(lines, materials)
     return long_prisms(lines) if which == "long prisms" else recovery(numbers(lines), which)
