@@ -36,6 +36,15 @@ BR_HD inline Index read_now(const Index* from) {
   return *from;
 #endif
 }
+BR_HD inline std::uint8_t read_now(const std::uint8_t* from) {
+#if defined(__CUDA_ARCH__)
+  unsigned byte;
+  asm volatile("ld.global.u8 %0, [%1];" : "=r"(byte) : "l"(__cvta_generic_to_global(from)));
+  return static_cast<std::uint8_t>(byte);
+#else
+  return *from;
+#endif
+}
 /// Loads a record of doubles at an address that is a multiple of 16 B.
 template <class Record>
 BR_HD inline Record read_record_now(const Record* from) {

@@ -20,6 +20,7 @@
 #include "fdem/setup/model.hpp"
 #include "fdem/triangles/loads.hpp"
 #include "fdem_shared/busy_items.hpp"
+#include "fdem_shared/couple_phase.hpp"
 #include "fdem_shared/exposed.hpp"
 #include "fdem_shared/held_couples.hpp"
 #include "fdem_shared/rigid.hpp"
@@ -93,10 +94,10 @@ struct World {
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
-         amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, held_couples.item, busy.item, busy.count, busy_joints.item,
-         busy_joints.count, ringed, rows);
+    each(couple_incidence, broad_phase, parent_joint, couple_phase, expected_vertex, node_vertex,
+         side_across, border_vertex, amplitudes, amplitude_times, amplitude_factors,
+         prescribed_velocity, reach_place, clock, device_flags, held_couples.item, busy.item,
+         busy.count, busy_joints.item, busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -139,8 +140,10 @@ struct World {
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
-  Incidence couple_incidence;             ///< (triangles; search, derive)
-  BroadPhase broad_phase;                 ///< scratch of the search (search)
+  Incidence couple_incidence;                     ///< (triangles; search, derive)
+  BroadPhase broad_phase;                         ///< scratch of the search (search)
+  Buffer<fdem_shared::CouplePhase> couple_phase;  ///< (couples; search, derive, pairs)
+  Buffer<std::uint8_t> expected_vertex;           ///< 1: marked, or soon (vertices; search)
   Buffer<Index> parent_joint;             ///< see CoupleForces  [-]  (couples; search, derive)
   Buffer<Index> reach_place;              ///< in `reach`, -1: a ghost, or it cannot touch  [-]
                                           ///< (triangles; search, derive)
@@ -157,6 +160,7 @@ struct World {
                                                                      ///< (triangles; dt)
   double least_step = 0.0;   ///< stable one of all, when last evaluated  [s]  (dt)
   bool margin_used = false;  ///< some own triangle has used its margin up (move)
+  bool marks_due = false;    ///< on a device: vertices are to be marked (move)
   /// Of each joint_pack joints; empty: all of them wait for ghosts. On the host. (joints /
   /// joint_pack; ranks; `done` within a step: pairs)
   std::vector<JointPack> joint_packs;
@@ -221,6 +225,9 @@ void take_up_rigid_bodies(World& w);
 void ask_ranks_for_search(World& w);
 bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
+/// Takes marks over without a search, if it can; expects those to come.
+bool follow_marks(World& w);
+void expect_marks(World& w);
 void find_couples(World& w);
 void wake_joints(World& w);
 /// Case::free_step of a whole model.  [s]

@@ -89,7 +89,8 @@ struct MoveAndWatch {
   static constexpr const char* name = "fdem.move_and_watch";
   Move move;
   View<const std::uint8_t> changed;  ///< flags of Change
-  std::int32_t* host_request;        ///< gets request_search where a margin is used up
+  std::int32_t* host_request;        ///< gets request_search where a margin is used up, or
+                                     ///< request_marks
   std::int32_t* told;  ///< ranks: gets the flags, which all vote on; none: one device holds all
   std::int64_t step = 0;
 
@@ -101,13 +102,23 @@ struct MoveAndWatch {
   BR_HD void load_early(Index t, Loaded& loaded) const { move.load_early(t, loaded); }
   BR_HD void load_late(Index t, Loaded& loaded) const { move.load_late(t, loaded); }
   BR_HD void update(Index t, Loaded& loaded) const {
-    if (move.update(t, loaded) == Moved::beyond) *host_request = request_search;
+    if (move.update(t, loaded) == Moved::beyond) ask_host(request_search);
     if (t != 0) return;
     const std::uint8_t softened = changed[change_softened], broken = changed[change_broken];
     if (told != nullptr)
       *told = (softened != 0 ? 1 << change_softened : 0) | (broken != 0 ? 1 << change_broken : 0);
     else if (marking_due(softened, broken, step))
-      *host_request = request_search;
+      ask_host(request_marks);
+  }
+
+ private:
+  /// The largest of what threads ask for.
+  BR_HD void ask_host(std::int32_t wanted) const {
+#if defined(__CUDA_ARCH__)
+    atomicMax(host_request, wanted);
+#else
+    if (*host_request < wanted) *host_request = wanted;
+#endif
   }
 };
 
@@ -324,8 +335,9 @@ Advanced advance_mesh(World& w, const StopAt& stop) {
       [&](const StepClocks& clocks) { take_step(AfterMove(clocks), w); },
       [&](const StepClocks& clocks) { take_forces(AfterSearch(clocks), w); },
       [&](std::int32_t host_request) {
-        if (host_request == request_search) {
-          find_couples(w);
+        if (host_request == request_marks || host_request == request_search) {
+          w.margin_used = host_request == request_search;
+          if (!follow_marks(w)) find_couples(w);
           return false;
         }
         if constexpr (requires { Launches::go_on(w); })

@@ -152,6 +152,7 @@ BR_HD auto force_after(const Couples& couples, Index i, double dt, const Nodes (
               materials[2] = {couples.material[couples.a[i]], couples.material[couples.b[i]]};
   auto state = couples.state[i];
   auto force = couples.force[i];
+  auto phase = CouplePhase::acts;
   Couples alone = couples;
   std::uint8_t exposed[2] = {};
   if constexpr (requires { couples.exposed; }) {
@@ -167,6 +168,7 @@ BR_HD auto force_after(const Couples& couples, Index i, double dt, const Nodes (
   show(alone.parent_joint, &no_joint, 1);
   show(alone.state, &state, 1);
   show(alone.force, &force, 1);
+  show(alone.phase, &phase, 1);
   alone.slow(0);
   return force;
 }
@@ -193,6 +195,7 @@ class CouplesElsewhere {
     no_joint_.push_back(-1);
     state_.push_back(couples_.state[i]);
     force_.push_back(couples_.force[i]);
+    phase_.push_back(CouplePhase::acts);
   }
   /// @param run  evaluates all couples of a kernel
   template <class Run>
@@ -209,6 +212,7 @@ class CouplesElsewhere {
     see(alone.parent_joint, std::as_const(no_joint_));
     see(alone.state, state_);
     see(alone.force, force_);
+    see(alone.phase, phase_);
     if (!force_.empty()) run(alone, static_cast<Index>(force_.size()));
   }
   /// Of the couple that was added as number k.
@@ -221,6 +225,7 @@ class CouplesElsewhere {
   std::vector<std::uint8_t> exposed_;
   std::vector<State> state_;
   std::vector<Force> force_;
+  std::vector<CouplePhase> phase_;
 };
 
 /// The push to come of contacts of elements that have corners in a face that a support holds, by

@@ -9,57 +9,17 @@
 #include "core/energy.hpp"
 #include "core/incidence.hpp"
 #include "core/pair_list.hpp"
-#include "core/select.hpp"
 #include "core/travel.hpp"
 #include "domain/drift.hpp"
 #include "domain/owned.hpp"
 #include "exec/timers.hpp"
+#include "fdem_shared/open_vertices.hpp"
 #include "fdem_shared/ranks.hpp"
 #include "fdem_shared/separated.hpp"
 #include "fdem_shared/shape.hpp"
-#include "fdem_shared/shared_marks.hpp"
+#include "fdem_shared/wanted.hpp"
 
 namespace breccia::fdem_shared {
-
-/// How the vertices of the mesh are open.
-struct OpenVertices {
-  View<const Index> vertex_of;               ///< of each node
-  View<const std::uint8_t> border, damaged;  ///< Case::open_vertex, ExposedVertices::vertex
-
-  /// Case::open_vertex, and bit 2: a joint here is damaged.
-  BR_HD int open(Index vertex) const { return border[vertex] | (damaged[vertex] != 0 ? 4 : 0); }
-};
-
-/// Marks the vertices of damaged joints, and of those at which a body has been taken out.
-template <class Shape, class Stage>
-struct MarkDamaged {
-  static constexpr const char* name = "fdem.mark_damaged";
-  View<const Stage> stage;
-  View<const Index> side_a, vertex_of;
-  View<std::uint8_t> marked;
-  BR_HD void operator()(Index i) const {
-    if (!is_damaged(stage[i]) && stage[i] != Stage::cut) return;
-    const Index first = Shape::corners * (side_a[i] / Shape::corners);
-    for (int k = 0; k < Shape::dimension; ++k)
-      set_flag(marked, vertex_of[first + Shape::corner_of_side(side_a[i] % Shape::corners, k)]);
-  }
-};
-
-/// Elements with a corner at the border, at a side that nothing joins, or at a damaged joint, but
-/// those that have been taken out.
-template <class Shape, class Hold>
-struct Touchable {
-  OpenVertices vertices;
-  View<const Index> hold;
-  View<const Hold> holds;
-  BR_HD bool operator()(Index t) const {
-    if (is_gone<Shape>(holds, hold[t])) return false;
-    int open = 0;
-    for (Index k = 0; k < Shape::corners; ++k)
-      open |= vertices.open(vertices.vertex_of[Shape::corners * t + k]);
-    return open != 0;
-  }
-};
 
 /// Starts the travel of an element anew and boxes it with its margin and what counts as near.
 template <class Shape>
@@ -111,41 +71,6 @@ struct NameElements {
   BR_HD void operator()(Index i) const {
     a[i] = touchable[a[i]];
     b[i] = touchable[b[i]];
-  }
-};
-
-/// Whether a couple can touch. Neighbours across a side do once nothing joins
-/// them; neighbours at an edge or a vertex do once a joint around it is damaged.
-template <class Shape, class Stage>
-struct MayTouch {
-  OpenVertices vertices;
-  View<const typename Shape::Sides> sides;
-  View<const Stage> stage;
-  View<const std::uint8_t> exposed;  ///< bits of sides that press; empty: all do
-  View<const Index> a, b;
-
-  BR_HD bool operator()(Index i) const {
-    const Index p = a[i], q = b[i];
-    // A joint that breaks exposes its sides and calls for a search.
-    if (exposed.size > 0 && (exposed[p] | exposed[q]) == 0) return false;
-    int shared = 0, open = 0, apart = 0;  // apart: the corner of p that q lacks
-    for (int k = 0; k < Shape::corners; ++k) {
-      const Index vertex = vertices.vertex_of[Shape::corners * p + k];
-      bool common = false;
-      for (int m = 0; m < Shape::corners; ++m)
-        common = common || vertex == vertices.vertex_of[Shape::corners * q + m];
-      if (!common) {
-        apart = k;
-        continue;
-      }
-      ++shared;
-      open |= vertices.open(vertex);
-    }
-    if (shared == 0) return true;
-    if (shared < Shape::dimension) return (open & 6) != 0;
-    const Index entry = sides[p].at[Shape::side_opposite(apart)];
-    if (entry < 0) return entry == Shape::side_free;
-    return is_parted(stage[pair_of(entry)]);
   }
 };
 
@@ -206,39 +131,6 @@ struct PlaceReach {
   View<Index> place;
   BR_HD void operator()(Index i) const { place[touchable[i]] = i; }
 };
-
-/// The mesh where kernels can read it.
-template <class World>
-OpenVertices open_vertices(World& w) {
-  if (static_cast<std::size_t>(w.border_vertex.size()) != w.given->open_vertex.size())
-    copy_to(w.border_vertex, w.given->open_vertex);
-  return {node_vertices(w), std::as_const(w.border_vertex).view(),
-          std::as_const(w.exposed.vertex).view()};
-}
-
-/// Marks the vertices of damaged joints.
-template <class World>
-void mark_opened(World& w) {
-  using Shape = ShapeOf<World>;
-  const OpenVertices vertices = open_vertices(w);
-  Buffer<std::uint8_t> marked(w.exec.space, static_cast<Index>(w.given->open_vertex.size()));
-  const auto stage = std::as_const(w.joints.stage).view();
-  for_each(
-      w.exec, w.joints.size(),
-      MarkDamaged<Shape, std::remove_cvref_t<decltype(stage[0])>>{
-          stage, std::as_const(Shape::side_a(w.joints)).view(), vertices.vertex_of, marked.view()});
-  share_marks(w, marked);
-  w.exposed.vertex.swap(marked);
-  copy_to(w.exposed.changed, std::vector<std::uint8_t>{0, 0});
-}
-
-/// Whether vertices must be marked now.
-template <class World>
-bool marking_is_due(const World& w) {
-  std::vector<std::uint8_t> changed;
-  copy_to(changed, w.exposed.changed);
-  return marking_due(changed[change_softened], changed[change_broken], w.step);
-}
 
 template <class World>
 void book_dropped(World& w, const Pairs& found) {
@@ -326,11 +218,13 @@ void drop_separated(World& w, Pairs& found) {
   gather_fields(w.exec, near, found);
 }
 
-/// The couples that may touch, or be near each other, until the next search.
+/// The couples that may touch, or be near each other, until the next search, and those that may
+/// once expected marks are there.
 template <class World>
 void search(World& w) {
   using Shape = ShapeOf<World>;
-  const OpenVertices vertices = open_vertices(w);
+  expect_marks(w);
+  const OpenVertices vertices = expected_vertices(w);
   Pairs found = boxes_that_overlap(w, vertices);
   const auto stage = std::as_const(w.joints.stage).view();
   const View<const Index> a = std::as_const(found.a).view(), b = std::as_const(found.b).view();
@@ -339,7 +233,7 @@ void search(World& w) {
                   of_either_owned(w.domain, a, b,
                                   MayTouch<Shape, std::remove_cvref_t<decltype(stage[0])>>{
                                       vertices, std::as_const(Shape::sides(w)).view(), stage,
-                                      Shape::exposed_sides(w), a, b}));
+                                      Shape::exposed_sides(w), a, b, true}));
   gather_fields(w.exec, kept, found);
   if constexpr (Shape::drops_separated) drop_separated(w, found);
   book_dropped(w, found);
@@ -369,7 +263,8 @@ bool any_rank_is_due(World& w) {
   std::vector<std::uint8_t> changed(static_cast<std::size_t>(w.exposed.changed.size()));
   for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = (bits >> i & 1) != 0 ? 1 : 0;
   copy_to(w.exposed.changed, changed);
-  return marking_is_due(w) || (bits & margin_bit) != 0;
+  w.margin_used = (bits & margin_bit) != 0;
+  return marking_is_due(w) || w.margin_used;
 }
 
 /// Change bits on a device, as its move has noted them, and whether a margin is used up.
@@ -377,8 +272,9 @@ template <class World>
 std::uint64_t noted_bits(World& w) {
   std::int32_t flags[2];
   peek_marked_bytes(flags, w.device_flags.data(), w.exec.space, sizeof flags);
-  w.margin_used = flags[0] != 0;
-  if (w.margin_used) clear_bytes(w.device_flags.data(), w.exec.space, sizeof flags[0]);
+  w.margin_used = flags[0] == request_search;
+  w.marks_due = flags[0] == request_marks;
+  if (flags[0] != 0) clear_bytes(w.device_flags.data(), w.exec.space, sizeof flags[0]);
   return static_cast<std::uint64_t>(flags[1]);
 }
 
@@ -398,7 +294,7 @@ bool mesh_couples_are_due(World& w) {
   const StageTime timed(w.exec, "travel");
   if (!w.domain.single_rank()) return any_rank_is_due(w);
   // On a device the move has looked at the marks, too.
-  return w.margin_used || (w.exec.space == Space::host && marking_is_due(w));
+  return w.margin_used || (w.exec.space == Space::host ? marking_is_due(w) : w.marks_due);
 }
 
 template <class World>
@@ -417,12 +313,54 @@ void find_mesh_couples(World& w) {
   const StageTime timed(w.exec, "contact_detection");
   const bool joints_changed = marking_is_due(w);
   if (joints_changed) {
-    mark_opened(w);
+    Buffer<std::uint8_t> marked = damaged_vertices(w);
+    mark_vertices(w, marked);
     Shape::note_exposed(w);
   }
   collective_try(w.domain.ranks, [&w] { search(w); });
   select_active_ghosts(w);
-  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.element);
+  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, touchable_now(w));
+}
+
+template <class World>
+auto parent_joints(World& w) {
+  using Shape = ShapeOf<World>;
+  const Pairs& pairs = std::as_const(w.couples).pairs;
+  const auto& j = std::as_const(w.joints);
+  const auto broke = times_of_break(j);
+  return ParentJoint<Shape, std::remove_const_t<decltype(broke)>>{
+      w.time - 1.5 * w.last_dt,
+      pairs.a.view(),
+      pairs.b.view(),
+      std::as_const(Shape::sides(w)).view(),
+      Shape::side_a(j).view(),
+      Shape::side_b(j).view(),
+      broke,
+      w.parent_joint.view()};
+}
+/// Takes the marks of this step over without a search, if all were expected and no margin is used
+/// up; a joint that broke asks for a search. All ranks answer alike.
+/// @returns false, with nothing done, if a search is due
+template <class World>
+bool follow_mesh_marks(World& w) {
+  if (w.margin_used || w.expected_vertex.size() != w.exposed.vertex.size()) return false;
+  const StageTime timed(w.exec, "contact_detection");
+  if (any_joint_broke(w)) return false;
+  Buffer<std::uint8_t> marked = damaged_vertices(w);
+  if (fold(w.exec, marked.size(), 0,
+           NotExpected{std::as_const(marked).view(), std::as_const(w.expected_vertex).view()},
+           Sum{}) != 0)
+    return false;
+  mark_vertices(w, marked);
+  const auto may_touch = may_touch_now(w);
+  const auto parents = parent_joints(w);
+  for_each(
+      w.exec, w.couples.size(),
+      OpenWaiting<std::remove_const_t<decltype(may_touch)>, std::remove_const_t<decltype(parents)>>{
+          may_touch, parents, w.couple_phase.view()});
+  w.held_couples.known = false;
+  if (w.next_dt > 0.0) w.next_dt = shortened_time_step(w, touchable_now(w));
+  return true;
 }
 
 /// Fills what follows from the couples.
@@ -437,12 +375,14 @@ void derive_mesh_couples(World& w) {
     w.busy.resize(pairs.size());
     if constexpr (Shape::lists_joints) w.busy_joints.resize(w.joints.size());
   }
-  const auto& j = std::as_const(w.joints);
+  for_each(w.exec, pairs.size(), parent_joints(w));
+  w.couple_phase.resize(pairs.size());
+  const auto state = std::as_const(w.couples.history.state).view();
+  const auto may_touch = may_touch_now(w);
   for_each(w.exec, pairs.size(),
-           ParentJoint<Shape, decltype(times_of_break(j))>{
-               w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(),
-               std::as_const(Shape::sides(w)).view(), Shape::side_a(j).view(),
-               Shape::side_b(j).view(), times_of_break(j), w.parent_joint.view()});
+           BeginPhases<std::remove_const_t<decltype(may_touch)>,
+                       std::remove_cvref_t<decltype(state[0])>>{may_touch, state,
+                                                                w.couple_phase.view()});
   // Ghosts have none in it: their owners tell of them.
   place_in_reach(w, false, w.reach_place);
 }

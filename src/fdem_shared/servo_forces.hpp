@@ -148,7 +148,10 @@ double target_of(const World& w, const Support& support) {
 
 struct HoldsOne {
   View<const Index> hold, a, b;
-  BR_HD bool operator()(Index i) const { return hold[a[i]] >= 0 || hold[b[i]] >= 0; }
+  View<const CouplePhase> phase;
+  BR_HD bool operator()(Index i) const {
+    return phase[i] != CouplePhase::waits && (hold[a[i]] >= 0 || hold[b[i]] >= 0);
+  }
 };
 template <class World>
 View<const Index> held_couples(World& w) {
@@ -156,8 +159,9 @@ View<const Index> held_couples(World& w) {
   if (!held.known) {
     const auto& pairs = std::as_const(w.couples.pairs);
     const auto& hold = std::as_const(ShapeOf<World>::elements(w).hold);
-    held.item =
-        items_where(w.exec, pairs.size(), HoldsOne{hold.view(), pairs.a.view(), pairs.b.view()});
+    held.item = items_where(w.exec, pairs.size(),
+                            HoldsOne{hold.view(), pairs.a.view(), pairs.b.view(),
+                                     std::as_const(w.couple_phase).view()});
     held.known = true;
   }
   return std::as_const(held.item).view();

@@ -158,7 +158,7 @@ void StepwiseRun<World>::receive_ghosts(World& w) const {
 }
 template <class World>
 void StepwiseRun<World>::search_if_due(World& w) const {
-  if (!couples_are_due(w)) return;
+  if (!couples_are_due(w) || follow_marks(w)) return;
   refresh_ghosts(w);
   find_couples(w);
 }

@@ -2,20 +2,21 @@
 // Couples by packs on the host: side by side where they do not meet, and where they do, the edges
 // of one side by side. The same arithmetic for each edge as in turn, so the same bits.
 
+#include <bit>
+
 #include "fdem/contact/couples.hpp"
 #include "math/lanes.hpp"
 
 namespace breccia::fdem {
 
 /// The six edges of a couple in the lanes of one pack, or of two; spare lanes repeat the last. For
-/// couples that are not new, without conservative forces and losses.
+/// couples that are not new, without conservative forces and losses: those that act, or meet.
 template <class R>
 struct EdgesSideBySide {
   static constexpr bool any_couple = false;
   static constexpr int at_once = width_of<R> >= 6 ? 6 : 3;
-  bool are_near;
 
-  bool near(const Vec2 (&)[3], const Vec2 (&)[3]) const { return are_near; }
+  bool near(const Vec2 (&)[3], const Vec2 (&)[3]) const { return true; }
 
   /// As EdgesInTurn.
   template <class Visit>
@@ -49,8 +50,8 @@ struct EdgesSideBySide {
       }
       target.over_double = lanes([&](int e) { return (e < 3 ? of_b : of_a).over_double; });
       const R before = lanes([&](int e) { return drag[e]; });
-      const EdgePushOf<R> all =
-          edge_push(law, scale, stiffness, before, dt, from, to, target, target_v);
+      EdgePushOf<R> all;
+      edge_push(law, scale, stiffness, before, dt, from, to, target, target_v, all);
       for (int k = 0; k < at_once; ++k) visit(first + k, lane(all, k));
     }
   }
@@ -59,6 +60,7 @@ struct EdgesSideBySide {
   static EdgePush lane(const EdgePushOf<R>& all, int k) {
     EdgePush p;
     p.touches = all.touches[k] != 0;
+    p.drag = all.drag[k];
     if (!p.touches) return p;
     for (int m = 0; m < 3; ++m) {
       p.overlap.at_a[m] = all.overlap.at_a[m][k];
@@ -68,13 +70,32 @@ struct EdgesSideBySide {
       p.normal[end] = {all.normal[end].x[k], all.normal[end].y[k]};
       p.friction[end] = {all.friction[end].x[k], all.friction[end].y[k]};
     }
-    p.drag = all.drag[k];
     p.taken = all.taken[k];
     p.sprung = all.sprung[k];
     p.stiffness = all.stiffness[k];
     return p;
   }
 };
+
+/// Phases of a pack of couples, a byte each: its lowest bit.
+struct PhaseBits {
+  std::uint64_t acting, resting;
+  template <int width>
+  static PhaseBits of(const CouplePhase* phase) {
+    static_assert(width <= 8 && static_cast<int>(CouplePhase::rests) == 0 &&
+                  static_cast<int>(CouplePhase::acts) == 1 &&
+                  static_cast<int>(CouplePhase::waits) == 2);
+    constexpr std::uint64_t one_each = 0x0101010101010101 >> 8 * (8 - width);
+    std::uint64_t bytes = 0;
+    __builtin_memcpy(&bytes, phase, width);
+    return {bytes & one_each, ~(bytes | bytes >> 1) & one_each};
+  }
+};
+/// Calls visit(k) for the couples of a pack that are among some bits.
+template <class Visit>
+inline void each_of(std::uint64_t bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<Index>(std::countr_zero(bits) / 8));
+}
 
 /// Couples [begin, end) by packs. @returns where it stops: at what does not fill a pack, or at a
 /// pack with a new couple
@@ -89,21 +110,22 @@ inline Index run_couples(const CoupleForces<Number>& kernel, Index begin, Index 
   };
   Index first = begin;
   for (; first + width <= end; first += width) {
+    const auto [acting, resting] = PhaseBits::of<width>(&kernel.phase[first]);
     bool is_new = false;
-    for (Index k = 0; k < width; ++k) is_new = is_new || kernel.state[first + k].scale == 0.0;
+    each_of(acting, [&](Index k) { is_new = is_new || kernel.state[first + k].scale == 0.0; });
     if (is_new) break;
-    Vec2Of<R> xa[3], xb[3];
-    corners(kernel.a, first, xa);
-    corners(kernel.b, first, xb);
-    const auto near = meet(xa, xb);
-    for (Index k = 0; k < width; ++k) {
-      const CoupleState& kept = kernel.state[first + k];
-      const bool are_near = near[k] != 0;
-      if (are_near || kept.work != 0.0 || kept.slid != 0.0)
-        kernel.evaluate(first + k, EdgesSideBySide<R>{are_near});
-      else
-        kernel.force[first + k] = {};
+    std::uint64_t due = acting;
+    if (resting != 0) {
+      Vec2Of<R> xa[3], xb[3];
+      corners(kernel.a, first, xa);
+      corners(kernel.b, first, xb);
+      const auto near = meet(xa, xb);
+      if (any(near))
+        each_of(resting, [&](Index k) {
+          if (near[k] != 0) due |= std::uint64_t{1} << 8 * k;
+        });
     }
+    each_of(due, [&](Index k) { kernel.evaluate(first + k, EdgesSideBySide<R>{}); });
   }
   return first;
 }

@@ -8,8 +8,11 @@
 #include "fdem/joints/joints.hpp"
 #include "fdem/laws/potential_contact.hpp"
 #include "fdem/triangles/triangles.hpp"
+#include "fdem_shared/couple_phase.hpp"
 
 namespace breccia::fdem {
+
+using fdem_shared::CouplePhase;
 
 /// Contact of two materials.
 struct ContactPair {
@@ -96,17 +99,17 @@ struct EdgeEnd {
   Vec2Of<R> position, velocity;
 };
 
-/// Force and work of an edge of one triangle in the other, in one step. Of a pack the numbers of
-/// edges that do not touch mean nothing, but for drag.
+/// Force and work of an edge of one triangle in the other, in one step. The numbers of edges that
+/// do not touch mean nothing, but for drag.
 template <class R>
 struct EdgePushOf {
   EdgeOverlapOf<R> overlap;
   decltype(R{} < R{}) touches{};
-  Vec2Of<R> normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
-  R drag{};                                    ///< what friction pulls with now  [N/m]
-  R taken{};                                   ///< work that it has taken up in this step  [J/m]
-  R sprung{};                                  ///< what its spring holds now  [J/m]
-  R stiffness{};                               ///< of its spring  [Pa]
+  Vec2Of<R> normal[2], friction[2];  ///< forces on its ends  [N/m]
+  R drag;                            ///< what friction pulls with now  [N/m]
+  R taken;                           ///< work that it has taken up in this step  [J/m]
+  R sprung;                          ///< what its spring holds now  [J/m]
+  R stiffness;                       ///< of its spring  [Pa]
 };
 using EdgePush = EdgePushOf<double>;
 
@@ -139,18 +142,21 @@ struct FrictionWork {
 /// @param drag       what friction pulled with before  [N/m]
 /// @param dt         the step that led here  [s]
 template <class R, class End>
-BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, double stiffness,
-                                     const R& drag, double dt, const End& from, const End& to,
-                                     const TargetOf<R>& target, const Vec2Of<R> (&target_v)[3]) {
-  EdgePushOf<R> p;
+BR_HD inline void edge_push(const ContactPair& law, double scale, double stiffness, const R& drag,
+                            double dt, const End& from, const End& to, const TargetOf<R>& target,
+                            const Vec2Of<R> (&target_v)[3], EdgePushOf<R>& p) {
   EdgeOverlapOf<R>& o = p.overlap;
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
   p.touches = overlap_of_edge(from.position, to.position, target, o);
-  if (!any(p.touches)) return p;
+  p.drag = zero;
+  if (!any(p.touches)) return;
   const double penalty = scale * law.penalty;
   normal_forces(o, from.position, to.position, penalty, p.normal[0], p.normal[1]);
-  const R zero = constant<R>(0.0), one = constant<R>(1.0);
-  p.drag = select(p.touches, drag, zero);
-  if (!(law.friction > 0.0)) return p;
+  if (!(law.friction > 0.0)) {
+    p.drag = select(p.touches, drag, zero);
+    p.taken = p.sprung = p.stiffness = zero;
+    return;
+  }
 
   const Vec2Of<R> edge = to.position - from.position;
   const R size = norm(edge);
@@ -171,7 +177,6 @@ BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, doubl
   p.friction[0] = (pull * (one - share)) * along;
   p.friction[1] = (pull * share) * along;
   p.drag = select(p.touches, pull, zero);
-  return p;
 }
 
 /// The six edges of a couple one after the other; any couple.
@@ -187,15 +192,14 @@ struct EdgesInTurn {
                         const Vec2 (&va)[3], const Target& of_a, const Vec2 (&xb)[3],
                         const Vec2 (&vb)[3], const Target& of_b, const Visit& visit) const {
     using End = EdgeEnd<double>;
-    for (int k = 0; k < 3; ++k) {
-      const int next = k == 2 ? 0 : k + 1;
-      visit(k, edge_push(law, scale, stiffness, drag[k], dt, End{xa[k], va[k]},
-                         End{xa[next], va[next]}, of_b, vb));
-    }
-    for (int k = 0; k < 3; ++k) {
-      const int next = k == 2 ? 0 : k + 1;
-      visit(3 + k, edge_push(law, scale, stiffness, drag[3 + k], dt, End{xb[k], vb[k]},
-                             End{xb[next], vb[next]}, of_a, va));
+    for (int edge = 0; edge < 6; ++edge) {
+      const bool own = edge < 3;
+      const int k = own ? edge : edge - 3, next = k == 2 ? 0 : k + 1;
+      const auto &x = own ? xa : xb, &v = own ? va : vb;
+      EdgePush p;
+      edge_push(law, scale, stiffness, drag[edge], dt, End{x[k], v[k]}, End{x[next], v[next]},
+                own ? of_b : of_a, own ? vb : va, p);
+      visit(edge, p);
     }
   }
 };
@@ -226,34 +230,31 @@ struct CoupleForces {
   JointLegacy joints;
   View<CoupleState> state;
   View<CoupleForceOf<Number>> force;
+  View<CouplePhase> phase;
 
   struct Loaded {
     Index a, b;
-    double scale, work, slid;
+    CouplePhase phase;
     Vec2 corner[2][3];
   };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void load_early(Index i, Loaded& loaded) const {
-    const CoupleState& kept = state[i];
+    loaded.phase = fdem_shared::read_phase_now(&phase[i]);
     loaded.a = read_now(&a[i]);
     loaded.b = read_now(&b[i]);
-    loaded.scale = read_now(&kept.scale);
-    loaded.work = read_now(&kept.work);
-    loaded.slid = read_now(&kept.slid);
   }
   BR_HD void load_late(Index, Loaded& loaded) const {
+    if (loaded.phase != CouplePhase::rests) return;
     for (int k = 0; k < 3; ++k) {
       loaded.corner[0][k] = read_record_now(&nodes[loaded.a].at[k].position);
       loaded.corner[1][k] = read_record_now(&nodes[loaded.b].at[k].position);
     }
   }
-  /// Most couples only find that the two do not meet. @returns false, with nothing written, if
-  /// these may
-  BR_HD bool update(Index i, const Loaded& loaded) const {
-    const bool resting = loaded.scale != 0.0 && loaded.work == 0.0 && loaded.slid == 0.0;
-    if (!resting || meet(loaded.corner[0], loaded.corner[1])) return false;
-    force[i] = {};
-    return true;
+  /// Most couples only find that the two do not meet. @returns false if these may; nothing is
+  /// written
+  BR_HD bool update(Index, const Loaded& loaded) const {
+    if (loaded.phase == CouplePhase::rests) return !meet(loaded.corner[0], loaded.corner[1]);
+    return loaded.phase == CouplePhase::waits;
   }
   /// On the host all couples: it finds whether the two meet on its way.
   BR_HD void operator()(Index i) const { slow(i); }
@@ -261,6 +262,7 @@ struct CoupleForces {
   /// @param edges  how the edges are taken: EdgesInTurn, or side by side
   template <class Edges>
   BR_HD void evaluate(Index i, const Edges& edges) const {
+    if (phase[i] == CouplePhase::waits) return;
     CoupleState& kept = state[i];
     Vec2 xa[3], va[3], xb[3], vb[3];
     split(nodes[a[i]], xa, va);
@@ -306,6 +308,7 @@ struct CoupleForces {
           add_shape_forces(of_b, over, scale * law.penalty, sum.on_b.at);
         }
     }
+    phase[i] = touching ? CouplePhase::acts : CouplePhase::rests;
     CoupleForceOf<Number>& stored = force[i];
     if (!touching && kept.work == 0.0 && kept.slid == 0.0) {
       stored = {};  // it may have touched while nothing moved

@@ -5,6 +5,7 @@
 #include "core/incidence.hpp"
 #include "fdem/laws/potential_contact.hpp"
 #include "fdem/triangles/triangles.hpp"
+#include "fdem_shared/couple_phase.hpp"
 
 namespace breccia::fdem {
 
@@ -31,6 +32,7 @@ struct Nearness {
   View<const Mat2> shape_inverse;
   IncidenceView couples;
   View<const Index> couple_a, couple_b;
+  View<const fdem_shared::CouplePhase> phase;
   View<const Index> joint_a, joint_b;  ///< edges of the joints
 
   BR_HD double reach(Index t) const { return near_reach(shape_inverse[t]); }
@@ -42,6 +44,7 @@ struct Nearness {
     const Index last = couples.last(t);
     for (Index c = couples.first(t); c < last && near != edges; ++c) {
       const Index couple = pair_of(couples.entries[c]);
+      if (phase[couple] == fdem_shared::CouplePhase::waits) continue;
       const Index other = side_of(couples.entries[c]) == 0 ? couple_b[couple] : couple_a[couple];
       near |= near_to(t, x, other, edges & ~near);
     }

@@ -3,6 +3,7 @@
 #include "fdem_shared/search.hpp"
 
 #include "fdem/ranks.hpp"
+#include "fdem/stepping/launches.hpp"
 
 namespace breccia::fdem {
 
@@ -16,6 +17,16 @@ void ask_ranks_for_search(World& w) {
 
 bool couples_are_due(World& w) {
   return fdem_shared::mesh_couples_are_due(w);
+}
+
+bool follow_marks(World& w) {
+  return fdem_shared::follow_mesh_marks(w);
+}
+
+void expect_marks(World& w) {
+  with_number(w.exec.precision, [&w](auto number) {
+    fdem_shared::expect_marks_of(w, joint_kernel<decltype(number)>(w));
+  });
 }
 
 void find_couples(World& w) {

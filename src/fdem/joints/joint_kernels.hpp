@@ -88,8 +88,7 @@ struct JointForces {
   template <class R>
   BR_HD auto update(Index i, const Loaded<R>& loaded) const {
     if constexpr (width_of<R> == 1) {
-      return loaded.stage == JointStage::dormant || (is_parted(loaded.stage) && !acts(i)) ||
-             stays_whole(i, loaded, false);
+      return is_quiet(i, loaded) || stays_whole(i, loaded, false);
     } else {
       constexpr unsigned all = (1U << width_of<R>)-1U;
       if (left<R>(loaded)) return Left{all, 0};
@@ -109,8 +108,29 @@ struct JointForces {
     }
   }
 
+  /// One joint: false only where it softens, breaks, or has a force though it is parted.
+  BR_HD bool update_at(const StepTime& now, Index i, const Loaded<double>& loaded) const {
+    if (is_quiet(i, loaded)) return true;
+    if (loaded.stage != JointStage::whole) return false;
+    const Whole<double> w = whole(i, loaded);
+    if (w.beyond) return false;
+    if (w.drags) work[i].slide += spent_on_slips(i, loaded, now.last_dt);
+    store_four<Number>(force, i, w.force);
+    return true;
+  }
+
   BR_HD void operator()(Index i) const {
     if (!run_at<double>(*this, i)) slow(i);
+  }
+  /// Whether a whole joint would not stay so if its strength were a part of it.
+  BR_HD bool is_about_to_soften(Index i) const {
+    constexpr double share = 0.7;  // of its strength
+    if (stage[i] != JointStage::whole) return false;
+    Loaded<double> loaded;
+    load_early(i, loaded);
+    load_late(i, loaded);
+    loaded.strength = share * loaded.strength;
+    return whole(i, loaded).beyond;
   }
 
   /// A joint that is softened or broken, or becomes so, or slips under pressure.
@@ -194,12 +214,7 @@ struct JointForces {
     Loaded<R> loaded;
     load_early(i, loaded);
     load_late(i, loaded);
-    R bond[12], offset[2];
-    gather_records(bonds, loaded.law, bond);
-    offset_of(i, offset);
-    const JointOpening<R> now = opening<R>(loaded, 0.0), before = opening<R>(loaded, dt);
-    const R sum = spent_by_pressures<R>(bond[0] / loaded.length, bond[2] * loaded.strength, bond[3],
-                                        loaded.length, before, now, offset);
+    const R sum = spent_on_slips(i, loaded, dt);
     if constexpr (width_of<R> == 1) {
       work[i].slide += sum;
     } else {
@@ -208,7 +223,16 @@ struct JointForces {
     }
   }
 
-  /// That work of a joint.  [J/m]
+  /// That work of a joint in a step.  [J/m]
+  /// @param span  of the step  [s]
+  template <class R>
+  BR_HD R spent_on_slips(Index i, const Loaded<R>& loaded, double span) const {
+    const ElasticLaw<R> elastic = elastic_law(i, loaded);
+    const JointOpening<R> now = opening<R>(loaded, 0.0), before = opening<R>(loaded, span);
+    return spent_by_pressures<R>(elastic.slope, elastic.cohesion, elastic.bond[3], loaded.length,
+                                 before, now, elastic.offset);
+  }
+  /// By its points.
   /// @param slope  p_f / h  [Pa/m]  @param cohesion  of this joint  [Pa]  @param h  its length  [m]
   template <class R>
   BR_HD static R spent_by_pressures(const R& slope, const R& cohesion, const R& friction,
@@ -371,6 +395,10 @@ struct JointForces {
   BR_HD void offset_of(Index i, R (&offset)[2]) const {
     offset[0] = offset[1] = constant<R>(0.0);
     if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
+  }
+  /// Whether a joint has nothing to do: it is dormant, or parted and without a force.
+  BR_HD bool is_quiet(Index i, const Loaded<double>& loaded) const {
+    return loaded.stage == JointStage::dormant || (is_parted(loaded.stage) && !acts(i));
   }
   /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
   /// stay so, or slips under pressure and this is not booked

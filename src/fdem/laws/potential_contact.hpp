@@ -66,7 +66,7 @@ template <class R>
 struct EdgeOverlapOf {
   R whole{};           ///< integral of phi over s, the share of the edge  [-]
   R moment{};          ///< integral of phi s over s  [-]
-  R begin{}, end{};    ///< the part of the edge that lies inside, in s  [-]
+  R begin, end;        ///< the part of the edge that lies inside, in s  [-]
   R at_a[3], at_b[3];  ///< area coordinates of the edge's ends in the target  [-]
 };
 using EdgeOverlap = EdgeOverlapOf<double>;

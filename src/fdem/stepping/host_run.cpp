@@ -74,7 +74,7 @@ void HostRun::couple_forces(World& w) const {
   const StageTime timed(w.exec, "contact_forces");
   with_number(w.exec.precision, [&](auto number) {
     const auto kernel = couple_kernel<decltype(number)>(w);
-    for_each_run(w.exec, w.couples.size(), 64,
+    for_each_run(w.exec, w.couples.size(), 512,
                  [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
   });
 }

@@ -48,7 +48,8 @@ CoupleForces<Number> couple_kernel(World& w) {
           {std::as_const(j.edge_a).view(), std::as_const(j.edge_b).view(),
            std::as_const(j.handover).view(), j.inherited_work.view()},
           c.history.state.view(),
-          c.history.force.as<Number>().view()};
+          c.history.force.as<Number>().view(),
+          w.couple_phase.view()};
 }
 
 template <class Number>
@@ -64,6 +65,7 @@ TriangleForces<Number> triangle_kernel(World& w) {
           std::as_const(w.joints.force.as<Number>()).view(),
           w.couple_incidence.view(),
           std::as_const(w.couples.history.force.as<Number>()).view(),
+          std::as_const(w.couple_phase).view(),
           t.force.view(),
           t.viscous_work.view()};
 }

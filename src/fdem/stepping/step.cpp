@@ -31,7 +31,7 @@ StableStep stable_step(const World& w) {
           w.given->holds.view(),
           w.dashpots.view(),
           {t.nodes.view(), t.shape_inverse.view(), w.couple_incidence.view(), pairs.a.view(),
-           pairs.b.view(), w.joints.edge_a.view(), w.joints.edge_b.view()},
+           pairs.b.view(), w.couple_phase.view(), w.joints.edge_a.view(), w.joints.edge_b.view()},
           w.given->time.evaluate_every,
           w.given->rebound.stiffness()};
 }

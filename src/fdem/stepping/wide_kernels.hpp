@@ -164,7 +164,8 @@ struct CouplesWide {
     const bool leads = place.edge == 0;
     CoupleState& kept = all.state[c];
     const ContactPair law = all.laws[loaded.law];
-    const bool is_new = loaded.scale == 0.0;
+    const bool waits = all.phase[c] == CouplePhase::waits;
+    const bool is_new = loaded.scale == 0.0 && !waits;
     if (is_new) loaded.scale = 1.0;
 
     Vec2 own[3], other[3], other_v[3];
@@ -173,7 +174,7 @@ struct CouplesWide {
       other[k] = loaded.other[k].position;
       other_v[k] = loaded.other[k].velocity;
     }
-    const bool near = is_item && boxes_meet(own, other);
+    const bool near = is_item && !waits && boxes_meet(own, other);
     const bool begins = near && is_new && loaded.parent_joint >= 0;
     if (group.any_of_warp(begins)) {
       if (begins && leads) cold_begin(&all, c);
@@ -187,7 +188,7 @@ struct CouplesWide {
       }
       group.wait();
     }
-    EdgePush mine;
+    EdgePush mine{};
     double scale = loaded.scale;
     if (all.rebound.loses()) {
       const double most = kept.most;
@@ -199,8 +200,8 @@ struct CouplesWide {
       }
     }
     if (near) {
-      mine = edge_push(law, scale, loaded.stiffness, loaded.drag, dt, loaded.corner[0],
-                       loaded.corner[1], Target::of(other), other_v);
+      edge_push(law, scale, loaded.stiffness, loaded.drag, dt, loaded.corner[0], loaded.corner[1],
+                Target::of(other), other_v, mine);
       kept.drag[place.edge] = mine.drag;
     }
     FrictionWork friction_work;
@@ -241,6 +242,8 @@ struct CouplesWide {
       sum += cold_shape_force(&all, c, scale * law.penalty, place.of_a, place.of);
     if (is_item && is_new && leads) kept.scale = loaded.scale;
 
+    if (is_item && leads && !waits)
+      all.phase[c] = touching != 0 ? CouplePhase::acts : CouplePhase::rests;
     Vec2Of<Number>& stored = *force_at(c, place);
     const bool rests = touching == 0 && loaded.work == 0.0 && loaded.slid == 0.0;
     const bool works = is_item && !rests;

@@ -49,6 +49,7 @@ struct TriangleForces {
       joint_force;  ///< the last one is zero: that of an edge without a joint
   IncidenceView couples;
   View<const CoupleForceOf<Number>> couple_force;
+  View<const CouplePhase> phase;  ///< of couples: others than those that act have no force
   View<Corners> force;
   View<double> viscous_work;
 
@@ -161,6 +162,12 @@ struct TriangleForces {
   BR_HD void add_couples(Index first, Index last, Vec2 (&sum)[3]) const {
     for (Index c = first; c < last; ++c) {
       const Entry entry = couples.entries[c];
+#if defined(__CUDA_ARCH__)
+      if (phase[pair_of(entry)] != CouplePhase::acts) {  // a byte for 48 that are zero
+        for (Vec2& s : sum) s += Vec2{0.0, 0.0};
+        continue;
+      }
+#endif
       const CoupleForceOf<Number>& f = couple_force[pair_of(entry)];
       const CornerVectors<Number>& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
       for (int k = 0; k < 3; ++k) sum[k] += converted<double>(mine.at[k]);

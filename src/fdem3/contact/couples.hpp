@@ -280,10 +280,12 @@ struct CoupleForces {
                                    ///< takes over
   View<CoupleState> state;
   View<CoupleForce> force;
+  View<fdem_shared::CouplePhase> phase;  ///< none rests: the state tells it
 
   template <class R>
   struct Loaded {
     Index a, b;
+    bool waits;  ///< it may not touch yet
     bool apart;  ///< it has not touched and does not
   };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
@@ -291,6 +293,7 @@ struct CoupleForces {
     loaded.a = read_now(&a[i]);
     loaded.b = read_now(&b[i]);
     const CoupleState& kept = state[i];
+    loaded.waits = waits(i);
     loaded.apart = kept.scale != 0.0 && kept.work == 0.0 && kept.slid == 0.0;
   }
   BR_HD void load_late(Index, Loaded<double>& loaded) const {
@@ -301,12 +304,16 @@ struct CoupleForces {
     loaded.apart = boxes_apart(xa, xb, 0.0);
   }
   /// Most couples rest apart: their forces are zero already. @returns whether this one does
-  BR_HD bool update(Index, const Loaded<double>& loaded) const { return loaded.apart; }
+  BR_HD bool update(Index, const Loaded<double>& loaded) const {
+    return loaded.waits || loaded.apart;
+  }
+  BR_HD bool waits(Index i) const { return phase[i] == fdem_shared::CouplePhase::waits; }
   BR_HD void operator()(Index i) const {
     if (!run_at<double>(*this, i)) slow(i);
   }
   BR_HD void slow(Index i) const {
     CoupleState& kept = state[i];
+    if (waits(i)) return;
     const bool is_new = kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;
     const TetrahedronNodes &na = nodes[a[i]], &nb = nodes[b[i]];
@@ -342,6 +349,7 @@ struct CoupleForces {
   /// are not.
   BR_HD bool is_due(Index i) const {
     const CoupleState& kept = state[i];
+    if (waits(i)) return false;
     if (kept.scale == 0.0 || kept.work != 0.0 || kept.slid != 0.0) return true;
     Partner of_a, of_b;
     places(nodes[a[i]], of_a.x);

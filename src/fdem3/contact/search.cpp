@@ -3,6 +3,7 @@
 #include "fdem_shared/search.hpp"
 
 #include "fdem3/ranks.hpp"
+#include "fdem3/stepping/launches.hpp"
 
 namespace breccia::fdem3 {
 namespace {
@@ -49,6 +50,14 @@ void ask_ranks_for_search(World& w) {
 
 bool couples_are_due(World& w) {
   return fdem_shared::mesh_couples_are_due(w);
+}
+
+bool follow_marks(World& w) {
+  return fdem_shared::follow_mesh_marks(w);
+}
+
+void expect_marks(World& w) {
+  fdem_shared::expect_marks_of(w, joint_kernel(w));
 }
 
 void find_couples(World& w) {

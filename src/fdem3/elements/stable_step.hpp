@@ -30,6 +30,7 @@ struct StableStep {
   View<const FaceDashpots> dashpots;  ///< empty: nothing absorbs
   IncidenceView couples;
   View<const Index> couple_a, couple_b;
+  View<const fdem_shared::CouplePhase> phase;
   View<const Index> joint_a, joint_b;  ///< faces of the joints
   int evaluate_every;                  ///< steps from one evaluation to the next
 
@@ -91,6 +92,7 @@ struct StableStep {
     const Index last = couples.last(t);
     for (Index c = couples.first(t); c < last; ++c) {
       const Index couple = pair_of(couples.entries[c]);
+      if (phase[couple] == fdem_shared::CouplePhase::waits) continue;
       if (near(side_of(couples.entries[c]) == 0 ? couple_b[couple] : couple_a[couple])) return true;
     }
     return false;

@@ -122,6 +122,18 @@ struct JointForces {
     load_late(i, loaded);
     if (!loaded.quiet && !stays_whole(i, loaded, true)) fail_or_soften(i, loaded);
   }
+  /// Whether a whole joint would not stay so if its strength were a part of it.
+  BR_HD bool is_about_to_soften(Index i) const {
+    constexpr double share = 0.7;  // of its strength
+    if (stage[i] != JointStage::whole) return false;
+    Loaded<double> loaded;
+    load_early(i, loaded);
+    if (loaded.quiet) return false;
+    load_late(i, loaded);
+    loaded.strength = share * loaded.strength;
+    return whole(loaded).beyond;
+  }
+
   /// The rest of the work for a joint of a pack that slips.
   void book_slip(Index i) const {
     const JointEnds ends = ends_of(i);

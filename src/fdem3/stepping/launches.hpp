@@ -45,7 +45,8 @@ inline CoupleForces couple_kernel(World& w) {
           std::as_const(w.parent_joint).view(),
           j.failure.view(),
           c.history.state.view(),
-          c.history.force.view()};
+          c.history.force.view(),
+          w.couple_phase.view()};
 }
 
 template <bool bedded>

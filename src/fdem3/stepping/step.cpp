@@ -37,6 +37,7 @@ StableStep stable_step(const World& w) {
           w.couple_incidence.view(),
           w.couples.pairs.a.view(),
           w.couples.pairs.b.view(),
+          w.couple_phase.view(),
           j.face_a.view(),
           j.face_b.view(),
           w.given->time.evaluate_every};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/energy_split.hpp"
+#include "fdem_shared/couple_phase.hpp"
 #include "fdem_shared/fluid/gas_source.hpp"
 #include "fdem_shared/joint_stages.hpp"
 #include "fdem_shared/shape.hpp"
@@ -76,7 +77,10 @@ struct MeshSim {
     }
     add("model.nodes", corners * count);
     add("searches", static_cast<double>(w.searches));
-    add("contacts.candidates", w.couples.size());
+    std::vector<fdem_shared::CouplePhase> phase;
+    copy_to(phase, w.couple_phase);
+    const auto waiting = std::count(phase.begin(), phase.end(), fdem_shared::CouplePhase::waits);
+    add("contacts.candidates", static_cast<double>(w.couples.size() - waiting));
   }
   static void add_cracks(const World& w, std::vector<Fact>& facts) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };

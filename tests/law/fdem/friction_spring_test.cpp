@@ -39,7 +39,9 @@ struct Edge {
                             turned({middle + edge, depth - edge})};
     const EdgeEnd<double> from{turned({0.0, 0.0}), {}}, to{turned({edge, 0.0}), {}};
     const Vec2 v[3] = {velocity, velocity, velocity};
-    push = edge_push(law, 1.0, push.stiffness, push.drag, dt, from, to, Target::of(corner), v);
+    const EdgePush last = push;
+    push = {};
+    edge_push(law, 1.0, last.stiffness, last.drag, dt, from, to, Target::of(corner), v, push);
     const double slip = dot(way, turned({1.0, 0.0}));
     work += 0.5 * (before + pull()) * slip;
     const double more = held + push.taken - push.sprung;
@@ -99,7 +101,7 @@ TEST(FrictionSpring, is_as_stiff_as_its_couple_has_been) {
   EXPECT_NEAR(e.pull(), 0.7 * p_t * 1e-6, 1e-9 * e.pull());
   e.move(1e-6, -1e-6);
   EXPECT_FALSE(e.push.touches);
-  EXPECT_EQ(e.push.stiffness, 0.0);
+  EXPECT_EQ(e.push.drag, 0.0);
 }
 
 /// It bears what Coulomb allows, to rounding, and no more; what slip spends is T times slip.

@@ -36,6 +36,8 @@ struct Touching {
     born.data()[0] = -1;
     Buffer<CoupleState> state(Space::host, 1);
     Buffer<CoupleForce> force(Space::host, 1);
+    Buffer<CouplePhase> phase(Space::host, 1);
+    phase.data()[0] = CouplePhase::acts;
     const CoupleForces<double> kernel{0.0,
                                       conservative,
                                       {},
@@ -48,7 +50,8 @@ struct Touching {
                                       std::as_const(born).view(),
                                       {},
                                       state.view(),
-                                      force.view()};
+                                      force.view(),
+                                      phase.view()};
     kernel(0);
     return force.data()[0];
   }

@@ -112,6 +112,8 @@ CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b, 
   const Buffer<Index> no_joint = buffer(std::vector<Index>{-1});
   Buffer<CoupleState> state(Space::host, 1);
   Buffer<CoupleForce> force(Space::host, 1);
+  Buffer<fdem_shared::CouplePhase> phase(Space::host, 1);
+  phase.data()[0] = fdem_shared::CouplePhase::acts;
   state.data()[0].scale = 1.0;           // it is not new: nothing is taken off
   if (held) state.data()[0].slid = 1.0;  // and does not rest
   for_each(Exec{}, 1,
@@ -126,7 +128,8 @@ CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b, 
                         no_joint.view(),
                         {},
                         state.view(),
-                        force.view()});
+                        force.view(),
+                        phase.view()});
   return force.data()[0];
 }
 

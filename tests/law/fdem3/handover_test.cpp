@@ -28,7 +28,8 @@ class Broken {
     copy_to(a_, std::vector<Index>{0});
     copy_to(b_, std::vector<Index>{1});
     copy_to(parent_, std::vector<Index>{-1});
-    failure_.resize(1), state_.resize(1), force_.resize(1);
+    failure_.resize(1), state_.resize(1), force_.resize(1), phase_.resize(1);
+    phase_.data()[0] = fdem_shared::CouplePhase::acts;
   }
   void broke_with(double pressing, double held) {
     JointFailure& joint = failure_.make(0);
@@ -37,12 +38,12 @@ class Broken {
     parent_.data()[0] = 0;
   }
   void evaluate() {
-    for_each(
-        Exec{}, 1,
-        CoupleForces{1.0, std::as_const(nodes_).view(), std::as_const(material_).view(),
-                     std::as_const(laws_).view(), 1, std::as_const(exposed_).view(),
-                     std::as_const(a_).view(), std::as_const(b_).view(),
-                     std::as_const(parent_).view(), failure_.view(), state_.view(), force_.view()});
+    for_each(Exec{}, 1,
+             CoupleForces{1.0, std::as_const(nodes_).view(), std::as_const(material_).view(),
+                          std::as_const(laws_).view(), 1, std::as_const(exposed_).view(),
+                          std::as_const(a_).view(), std::as_const(b_).view(),
+                          std::as_const(parent_).view(), failure_.view(), state_.view(),
+                          force_.view(), phase_.view()});
   }
   /// Of the overlap as it would press without a joint before it.
   Pressing whole() const {
@@ -82,6 +83,7 @@ class Broken {
   RareArray<JointFailure> failure_;
   Buffer<CoupleState> state_;
   Buffer<CoupleForce> force_;
+  Buffer<fdem_shared::CouplePhase> phase_;
 };
 
 /// A tilted joint holds little beside what its overlap would: force and energy of the contact are
