@@ -11,6 +11,7 @@
 //                          stored, where the item, or one of its pack, is left to slow(); it knows
 //                          no time
 //   Item                   optional: the type of one item's numbers, if it is not double
+//   update_at(now, i, loaded)  optional: update() with the time of the step, on a device
 //   set(now)               gives the kernel the time of a step
 //
 // A kernel whose items nothing reads ahead has operator()(i) alone, and may have set(now). One that

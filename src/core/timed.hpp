@@ -127,7 +127,12 @@ struct ClockedLaunch : LoadedBy<Kernel> {
             ? StepTime{c.now.time + c.now.next_dt, c.now.next_dt, c.now.next_dt, c.now.step}
             : c.now;
     if constexpr (HasSlow<Kernel>) {
-      if (!kernel.update(i, loaded...)) run_slow(&kernel, now, i);
+      bool done = false;
+      if constexpr (requires { kernel.update_at(now, i, loaded...); })
+        done = kernel.update_at(now, i, loaded...);
+      else
+        done = kernel.update(i, loaded...);
+      if (!done) run_slow(&kernel, now, i);
     } else if constexpr (requires { kernel.update_at(now, i, loaded...); }) {
       kernel.update_at(now, i, loaded...);
     } else {

@@ -55,8 +55,17 @@ struct ListBusy {
   BR_HD void set(const StepTime&) {}
   BR_HD void load_early(Index i, Loaded& loaded) const { all.load_early(i, loaded); }
   BR_HD void load_late(Index i, Loaded& loaded) const { all.load_late(i, loaded); }
-  BR_HD void update(Index i, const Loaded& loaded) const {
-    if (!all.update(i, loaded)) busy[place_at_end(count[0])] = i;
+  BR_HD void update(Index i, const Loaded& loaded) const { note(i, all.update(i, loaded)); }
+  BR_HD void update_at(const StepTime& now, Index i, const Loaded& loaded) const {
+    if constexpr (requires { all.update_at(now, i, loaded); })
+      note(i, all.update_at(now, i, loaded));
+    else
+      note(i, all.update(i, loaded));
+  }
+
+ private:
+  BR_HD void note(Index i, bool done) const {
+    if (!done) busy[place_at_end(count[0])] = i;
   }
 };
 
