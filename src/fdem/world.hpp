@@ -94,10 +94,10 @@ struct World {
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, parent_joint, couple_phase, expected_vertex, node_vertex,
-         side_across, border_vertex, amplitudes, amplitude_times, amplitude_factors,
-         prescribed_velocity, reach_place, clock, device_flags, held_couples.item, busy.item,
-         busy.count, busy_joints.item, busy_joints.count, ringed, rows);
+    each(couple_incidence, broad_phase, parent_joint, couple_phase, node_vertex, side_across,
+         border_vertex, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
+         reach_place, clock, device_flags, held_couples.item, busy.item, busy.count,
+         busy_joints.item, busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -143,7 +143,6 @@ struct World {
   Incidence couple_incidence;                     ///< (triangles; search, derive)
   BroadPhase broad_phase;                         ///< scratch of the search (search)
   Buffer<fdem_shared::CouplePhase> couple_phase;  ///< (couples; search, derive, pairs)
-  Buffer<std::uint8_t> expected_vertex;           ///< 1: marked, or soon (vertices; search)
   Buffer<Index> parent_joint;             ///< see CoupleForces  [-]  (couples; search, derive)
   Buffer<Index> reach_place;              ///< in `reach`, -1: a ghost, or it cannot touch  [-]
                                           ///< (triangles; search, derive)

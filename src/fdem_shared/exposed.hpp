@@ -30,12 +30,16 @@ BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
   set_flag(flags, change);
 }
 
+/// Bits of ExposedVertices::vertex: a joint here is damaged; or, only where none is, one may be
+/// before the next search (open_vertices.hpp).
+inline constexpr std::uint8_t vertex_damaged = 1, vertex_expected = 2;
+
 /// Where joints have opened. A vertex becomes contact-active at a step fixed by the physics, not at
 /// the next search, so results do not depend on when searches happen.
 struct ExposedVertices {
   Buffer<std::uint8_t>
       changed;                  ///< flags of Change since the last marking  [-]  (2; pairs, search)
-  Buffer<std::uint8_t> vertex;  ///< 1: a joint here is damaged  [-]  (vertices; search)
+  Buffer<std::uint8_t> vertex;  ///< vertex_damaged, vertex_expected, or 0  [-]  (vertices; search)
 };
 
 /// Data of the whole mesh that a rank has besides its part.

@@ -18,11 +18,14 @@ namespace breccia::fdem_shared {
 
 /// How the vertices of the mesh are open.
 struct OpenVertices {
-  View<const Index> vertex_of;               ///< of each node
-  View<const std::uint8_t> border, damaged;  ///< Case::open_vertex, ExposedVertices::vertex
+  View<const Index> vertex_of;              ///< of each node
+  View<const std::uint8_t> border, marked;  ///< Case::open_vertex, ExposedVertices::vertex
+  int counts = vertex_damaged;              ///< marks that do
 
   /// Case::open_vertex, and bit 2: a joint here is damaged.
-  BR_HD int open(Index vertex) const { return border[vertex] | (damaged[vertex] != 0 ? 4 : 0); }
+  BR_HD int open(Index vertex) const {
+    return border[vertex] | ((marked[vertex] & counts) != 0 ? 4 : 0);
+  }
   /// Of all corners of an element together.
   template <class Shape>
   BR_HD int open_at(Index t) const {
@@ -120,9 +123,20 @@ Buffer<std::uint8_t> damaged_vertices(World& w) {
   share_marks(w, marked);
   return marked;
 }
+/// What was expected stays so where nothing is damaged.
+struct KeepExpected {
+  static constexpr const char* name = "fdem.keep_expected";
+  View<const std::uint8_t> known;
+  View<std::uint8_t> marked;
+  BR_HD void operator()(Index v) const {
+    if (marked[v] == 0) marked[v] = known[v] & vertex_expected;
+  }
+};
 /// Takes the marks of this step over.
 template <class World>
 void mark_vertices(World& w, Buffer<std::uint8_t>& marked) {
+  for_each(w.exec, marked.size(),
+           KeepExpected{std::as_const(w.exposed.vertex).view(), marked.view()});
   w.exposed.vertex.swap(marked);
   copy_to(w.exposed.changed, std::vector<std::uint8_t>{0, 0});
 }
@@ -142,32 +156,39 @@ struct MarkExpected {
   }
 };
 
-/// Vertices where marks are expected before the next search, those that have one among them; all
-/// ranks know of the same ones.
+struct NoteExpected {
+  static constexpr const char* name = "fdem.note_expected";
+  View<const std::uint8_t> expected;
+  View<std::uint8_t> vertex;
+  BR_HD void operator()(Index v) const {
+    if ((vertex[v] & vertex_damaged) == 0) vertex[v] = expected[v] != 0 ? vertex_expected : 0;
+  }
+};
+/// Notes where marks are expected before the next search; all ranks know of the same vertices.
 /// @param joints  the kernel of their forces
 template <class World, class Joints>
 void expect_marks_of(World& w, const Joints& joints) {
   using Shape = ShapeOf<World>;
-  Buffer<std::uint8_t>& expected = w.expected_vertex;
-  expected = w.exposed.vertex;
-  expected.resize(static_cast<Index>(w.given->open_vertex.size()));
+  Buffer<std::uint8_t> expected(w.exec.space, w.exposed.vertex.size());
   for_each(w.exec, w.joints.size(),
            MarkExpected<Shape, Joints>{joints, std::as_const(Shape::side_a(w.joints)).view(),
                                        node_vertices(w), expected.view()});
   share_marks(w, expected);
+  for_each(w.exec, expected.size(),
+           NoteExpected{std::as_const(expected).view(), w.exposed.vertex.view()});
 }
-/// As open_vertices(), with the marks that are expected for those that are there.
+/// As open_vertices(), with the marks that are expected beside those that are there.
 template <class World>
 OpenVertices expected_vertices(World& w) {
   OpenVertices vertices = open_vertices(w);
-  vertices.damaged = std::as_const(w.expected_vertex).view();
+  vertices.counts = vertex_damaged | vertex_expected;
   return vertices;
 }
 
 /// Whether a mark was not expected.
 struct NotExpected {
-  View<const std::uint8_t> marked, expected;
-  BR_HD int operator()(Index v) const { return marked[v] != 0 && expected[v] == 0 ? 1 : 0; }
+  View<const std::uint8_t> marked, known;
+  BR_HD int operator()(Index v) const { return marked[v] != 0 && known[v] == 0 ? 1 : 0; }
 };
 
 /// The couples that may touch, by the marks of now.

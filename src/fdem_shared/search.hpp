@@ -343,12 +343,12 @@ auto parent_joints(World& w) {
 /// @returns false, with nothing done, if a search is due
 template <class World>
 bool follow_mesh_marks(World& w) {
-  if (w.margin_used || w.expected_vertex.size() != w.exposed.vertex.size()) return false;
+  if (w.margin_used) return false;
   const StageTime timed(w.exec, "contact_detection");
   if (any_joint_broke(w)) return false;
   Buffer<std::uint8_t> marked = damaged_vertices(w);
   if (fold(w.exec, marked.size(), 0,
-           NotExpected{std::as_const(marked).view(), std::as_const(w.expected_vertex).view()},
+           NotExpected{std::as_const(marked).view(), std::as_const(w.exposed.vertex).view()},
            Sum{}) != 0)
     return false;
   mark_vertices(w, marked);

@@ -11,7 +11,9 @@ namespace breccia::fdem_shared {
 /// Vertices that this rank has marked just now.
 struct MarkedAnew {
   View<const std::uint8_t> marked, known;
-  BR_HD bool operator()(Index v) const { return marked[v] != 0 && known[v] == 0; }
+  BR_HD bool operator()(Index v) const {
+    return marked[v] != 0 && (known[v] & vertex_damaged) == 0;
+  }
 };
 /// Damage stays, also where its joint has gone to another rank.
 struct KeepMarks {
@@ -19,7 +21,7 @@ struct KeepMarks {
   View<const std::uint8_t> known;
   View<std::uint8_t> marked;
   BR_HD void operator()(Index v) const {
-    if (known[v] != 0) marked[v] = 1;
+    if ((known[v] & vertex_damaged) != 0) marked[v] = 1;
   }
 };
 struct TakeMarks {

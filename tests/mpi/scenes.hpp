@@ -72,20 +72,9 @@ using fdem::testing::Scene;
 
 /// A brittle disc that breaks on a plate. Extrinsic: its triangles move as one until joints wake.
 inline Scene impact(const char* joints) {
-  Scene scene;
-  fdem::MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
-  m.joints = joints;
-  m.friction = 0.5;
-  m.damping = 0.02;
-  m.joint.tension = 2e6;
-  m.joint.cohesion = 6e6;
-  m.joint.energy_open = 2.0;
-  m.joint.energy_slide = 6.0;
-  scene.config.time.evaluate_every = 50;
+  Scene scene = fdem::testing::brittle_disc(60.0);
+  scene.config.materials[0].joints = joints;
   scene.config.gravity = {0.0, -9.81};
-  scene.body("disc", prepare::ringed_disc({0.0, 0.0202}, 0.02, 4e-3), 0, {2.0, -60.0});
-  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.01}, {0.06, 0.02}}, 5e-3));
-  scene.support("ground", {-1.0, -1.0}, {1.0, -0.0199}, {"y"});
   scene.load("push", "pressure", {-1.0, -1.0}, {-0.0299, 1.0}, "plate").pressure = 1e5;
   scene.load("quiet", "absorbing", {0.0299, -1.0}, {1.0, 1.0}, "plate");
   return scene;

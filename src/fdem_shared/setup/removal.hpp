@@ -180,7 +180,6 @@ void cut_off(World& w, const Spent& spent_by) {
   back(w.joints.work, j.work);
   take_inherited(w.joints, j);
   copy_to(w.exposed.changed, std::vector<std::uint8_t>{1, 1});  // the next step searches
-  w.expected_vertex.clear();
   if (j.size() > 0) derive_bundles(w);
   w.graph.clear();
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fdem_shared/couple_phase.hpp"
+#include "fdem_shared/exposed.hpp"
 #include "physics/fdem/scene.hpp"
 #include "physics/fdem3/scene.hpp"
 #include "run/method/fdem3_method.hpp"
@@ -11,21 +12,8 @@
 namespace breccia {
 namespace marks_test {
 
-/// A brittle disc that breaks on a plate.
 fdem::World disc(int threads, Space space = Space::host) {
-  fdem::testing::Scene scene;
-  fdem::MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
-  m.joints = "intrinsic";
-  m.friction = 0.5;
-  m.damping = 0.02;
-  m.joint.tension = 2e6;
-  m.joint.cohesion = 6e6;
-  m.joint.energy_open = 2.0;
-  m.joint.energy_slide = 6.0;
-  scene.config.time.evaluate_every = 50;
-  scene.body("disc", prepare::ringed_disc({0.0, 0.0202}, 0.02, 4e-3), 0, {2.0, -20.0});
-  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.01}, {0.06, 0.02}}, 5e-3));
-  scene.support("ground", {-1.0, -1.0}, {1.0, -0.0199}, {"y"});
+  const fdem::testing::Scene scene = fdem::testing::brittle_disc(20.0);
   Exec exec;
   exec.threads = threads;
   exec.space = space;
@@ -42,7 +30,9 @@ struct Ended {
 template <class World>
 Ended ended(World w, int steps, bool searches_each_time) {
   for (int i = 0; i < steps; ++i) {
-    if (searches_each_time) w.expected_vertex.clear();
+    if (searches_each_time)
+      for (Index v = 0; v < w.exposed.vertex.size(); ++v)
+        w.exposed.vertex.data()[v] &= fdem_shared::vertex_damaged;
     step(w);
   }
   const EnergyBalance b = energies(w).balance;

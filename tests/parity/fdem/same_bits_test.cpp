@@ -13,20 +13,8 @@ using fdem::testing::Scene;
 
 /// A brittle disc that breaks on a plate, both with joints.
 Scene impact(double margin = 0.1) {
-  Scene scene;
-  fdem::MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
-  m.joints = "intrinsic";
-  m.friction = 0.5;
-  m.damping = 0.02;
-  m.joint.tension = 2e6;
-  m.joint.cohesion = 6e6;
-  m.joint.energy_open = 2.0;
-  m.joint.energy_slide = 6.0;
-  scene.config.time.evaluate_every = 50;
+  Scene scene = fdem::testing::brittle_disc(60.0);
   scene.config.search.margin = margin;
-  scene.body("disc", prepare::ringed_disc({0.0, 0.0202}, 0.02, 4e-3), 0, {2.0, -60.0});
-  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.01}, {0.06, 0.02}}, 5e-3));
-  scene.support("ground", {-1.0, -1.0}, {1.0, -0.0199}, {"y"});
   return scene;
 }
 fdem::World world(int threads, double margin = 0.1) {

@@ -85,6 +85,25 @@ struct Scene {
 
 inline constexpr double far = 1e9;
 
+/// A brittle disc, 40 mm across, that falls on a plate and breaks there; both have joints.
+/// @param speed  of the disc  [m/s]
+inline Scene brittle_disc(double speed) {
+  Scene scene;
+  MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
+  m.joints = "intrinsic";
+  m.friction = 0.5;
+  m.damping = 0.02;
+  m.joint.tension = 2e6;
+  m.joint.cohesion = 6e6;
+  m.joint.energy_open = 2.0;
+  m.joint.energy_slide = 6.0;
+  scene.config.time.evaluate_every = 50;
+  scene.body("disc", prepare::ringed_disc({0.0, 0.0202}, 0.02, 4e-3), 0, {2.0, -speed});
+  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.01}, {0.06, 0.02}}, 5e-3));
+  scene.support("ground", {-1.0, -1.0}, {1.0, -0.0199}, {"y"});
+  return scene;
+}
+
 inline TriangleNodes& nodes(World& w, Index t) {
   return w.triangles.nodes.data()[t];
 }
