@@ -1,5 +1,5 @@
 #pragma once
-// What a step has to do for a couple: one byte in place of its state, for all those that rest.
+// Phase of a couple: a byte that tells a step whether to evaluate it, without a look at its state.
 
 #include <cstdint>
 

@@ -123,7 +123,7 @@ Buffer<std::uint8_t> damaged_vertices(World& w) {
   share_marks(w, marked);
   return marked;
 }
-/// What was expected stays so where nothing is damaged.
+/// Expected marks stay where nothing is damaged.
 struct KeepExpected {
   static constexpr const char* name = "fdem.keep_expected";
   View<const std::uint8_t> known;
