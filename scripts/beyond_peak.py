@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""C30 of `breccia materials` with other keys in prisms pressed to three times the strain of their peak and in specimens of `breccia test`, for docs/trials-concrete.md.
+"""Concretes as the library had them while turns wore their links (`keyed_specimens.WORN`), with other keys, in prisms pressed to three times the strain of their peak and in specimens of `breccia test`, for docs/trials-concrete.md.
 
     scripts/beyond_peak.py [--group alone] [--packings 5,6,7] [--elements 600] [--only TEXT] [--binary build/release/breccia] [--jobs 1] [--record docs/results/beyond_peak.csv]
 
-Groups: `alone`, keys of the library's C30 changed one by one; `beside`, likewise beside turn_wear = 0 and half of its cohesion; `drawn`, eleven keys at once, 60 sets by a Latin hypercube, all of 600
-elements; `calibrated`, sets whose T and C were found so that prisms of 1,200 elements (packings 1 to 4) show f_c and f_t of their concrete (--elements 600,1200,2400). --only: sets with it in their
+Groups: `alone`, keys of that C30 changed one by one; `beside`, likewise beside turn_wear = 0 and half of its cohesion; `drawn`, eleven keys at once, 60 sets by a Latin hypercube, all of 600
+elements; `calibrated`, sets whose T and C were found so that prisms of 1,200 elements (packings 1 to 4) show f_c and f_t of their concrete (--elements 600,1200,2400); `compaction`, C30 without turn_wear whose links yield earlier; `early`, likewise all five, with other bounds on friction,
+from which the keys of the library were taken (--packings 5,6). --only: sets with it in their
 name. Runs are in out/beyond_peak/; called again, only what is missing is run. --record replaces lines of these runs in that file.
 """
 import argparse
@@ -81,8 +82,54 @@ CALIBRATED = {"C30 turn_wear 0": kept("C30", 12.0, 2.432, 30.47), "C30 turn_wear
               "C60 turn_wear 0, Y_c 72 MPa": kept("C60", 17.0, 3.790, 63.01, compaction_strength=72e6), "C100 turn_wear 0, Y_c 114 MPa": kept("C100", 21.0, 4.380, 110.5, compaction_strength=114.3e6)}
 COMPACTION = {"Y_c 70.6 MPa": {}, "Y_c 30 MPa": {"compaction_strength": 30e6}, "Y_c 20 MPa": {"compaction_strength": 20e6}, "Y_c 12 MPa": {"compaction_strength": 12e6},
               "Y_c 20 MPa, H_c 0.7": {"compaction_strength": 20e6, "compaction_slope": 0.7}, "Y_c 12 MPa, H_c 0.7": {"compaction_strength": 12e6, "compaction_slope": 0.7}, "Y_c 20 MPa, H_c 0.1": {"compaction_strength": 20e6, "compaction_slope": 0.1}}
+GRADE = {"C20": 28, "C30": 38, "C40": 48, "C60": 68, "C100": 108}  # f_c [MPa]
+
+
+def early():
+    """Sets without turn_wear: how early links yield under pressure (Y_c over f_c, H_c), and how friction is bounded (sharp, or smooth with s_F over f_c)."""
+    sets = {}
+
+    def add(name, grade, share, times, **keys):
+        first = CALIBRATED[f"{grade} turn_wear 0"]
+        sets[f"{grade}, {name}"] = first | keys | {"end": times * first["end"], "cohesion": round(share * first["cohesion"] * 1e-6, 2) * 1e6}
+
+    def yields(grade, over):
+        return round(over * GRADE[grade], 1) * 1e6
+
+    for grade in GRADE:
+        for over in YIELDS:
+            for slope in SLOPES:
+                add(f"Y_c {over:g} f_c, H_c {slope:g}", grade, 0.85, 1.5, compaction_strength=yields(grade, over), compaction_slope=slope)
+    pores = {"compaction_strength": 13e6, "compaction_slope": 0.5}
+    for name, share, keys in (("", 0.85, {}), ("C 20 MPa", 0.65, {}), ("s_F 4.4 MPa", 0.75, {"friction_cap": 4.4e6}), ("s_F 5.3 MPa", 0.65, {"friction_cap": 5.3e6}), ("slip_wear 0.15", 0.65, {"slip_wear": 0.15}),
+                              ("slip_wear 0.6", 1.2, {"slip_wear": 0.6}), ("nu 0.16", 0.7, {"poisson": 0.16}), ("H_c 0.7", 0.85, {"compaction_slope": 0.7}), ("smooth, s_F 8 MPa", 0.7, {"friction_bound": "smooth", "friction_cap": 8e6}),
+                              ("Y_b 6 MPa", 0.85, {"crushing_strength": 6e6})):
+        add("Y_c 13 MPa" + (name and f", {name}"), "C30", share, 1.5, **pores | keys)
+    pores = {"compaction_strength": 65e6, "compaction_slope": 0.4}
+    for name, share, keys in (("", 0.85, {}), ("C 67 MPa", 0.6, {}), ("s_F 12.5 MPa", 0.7, {"friction_cap": 12.5e6}), ("s_F 7.5 MPa", 0.9, {"friction_cap": 7.5e6}), ("slip_wear 0.1", 0.6, {"slip_wear": 0.1})):
+        add("Y_c 65 MPa" + (name and f", {name}"), "C100", share, 1.5, **pores | keys)
+
+    def smooth(name, grade, bound, over, share, slope=0.5, **keys):
+        add(f"smooth, s_F {bound:g} f_c, Y_c {over:g} f_c" + (name and f", {name}"), grade, share, 1.4, friction_bound="smooth", friction_cap=round(bound * GRADE[grade], 2) * 1e6, compaction_strength=yields(grade, over), compaction_slope=slope, **keys)
+
+    for grade, bounds, overs, share in (("C20", (0.21, 0.3), (0.2, 0.35), 0.6), ("C30", (0.17, 0.21, 0.26), (0.25, 0.45), 0.65), ("C40", (0.13, 0.18, 0.23), (0.35, 0.55), 0.65), ("C60", (0.08, 0.12, 0.17), (0.4, 0.6), 0.65),
+                                        ("C100", (0.06, 0.1, 0.15), (0.5, 0.8), 0.65)):
+        for bound in bounds:
+            for over in overs:
+                smooth("", grade, bound, over, share)
+    for name, share, keys in (("slip_wear 0.2", 0.55, {"slip_wear": 0.2}), ("slip_wear 0.5", 0.8, {"slip_wear": 0.5}), ("mu_b 0.4, eta_b 0.5", 0.65, {"broken_friction": 0.4, "broken_rolling_limit": 0.5}), ("phi_i 20 deg", 0.7, {"friction_angle": "20 deg"}),
+                              ("phi_i 40 deg", 0.6, {"friction_angle": "40 deg"})):
+        smooth(name, "C30", 0.21, 0.35, share, **keys)
+    smooth("phi_i 20 deg", "C100", 0.1, 0.6, 0.75, friction_angle="20 deg")
+    smooth("phi_i 40 deg", "C100", 0.1, 0.6, 0.6, friction_angle="40 deg")
+    smooth("H_c 0.4", "C100", 0.1, 0.4, 0.6, slope=0.4)
+    return sets
+
+
+YIELDS, SLOPES = (0.2, 0.35, 0.6, 1.06), (0.4, 0.55)  # Y_c over f_c, H_c
 GROUPS = {"alone": (ALONE, SPECIMENS[:3]), "beside": ({name: HALF | keys for name, keys in BESIDE.items()}, SPECIMENS), "drawn": (drawn(), SPECIMENS), "calibrated": (CALIBRATED, WHOLE),
-          "compaction": ({name: {"turn_wear": 0.0, "cohesion": 30e6} | keys for name, keys in COMPACTION.items()}, (*SPECIMENS[:4], "oedometer", "triaxial_100"))}
+          "compaction": ({name: {"turn_wear": 0.0, "cohesion": 30e6} | keys for name, keys in COMPACTION.items()}, (*SPECIMENS[:4], "oedometer", "triaxial_100")),
+          "early": (early(), (*SPECIMENS[:2], "triaxial_20", "triaxial_50", "triaxial_100", "oedometer", "platens_prism", "platens_cube"))}
 
 
 # ---------------------------------------------------------------- runs
@@ -119,7 +166,8 @@ def sample(keys):
 
 
 def run(group, name, test, elements, packing, given):
-    keys, folder = GROUPS[group][0][name], OUT / f"{group}-{name}-{test}-{elements}-{packing}".replace(" ", "_")
+    keys = GROUPS[group][0][name]
+    keys, folder = keyed_specimens.WORN[keys.get("use", "C30")] | keys, OUT / f"{group}-{name}-{test}-{elements}-{packing}".replace(" ", "_")
     if keyed_specimens.summary_of(folder):
         return
     case = OUT / f"{folder.name}.toml"
@@ -186,6 +234,49 @@ def one_by_one(lines, group):
     for name in GROUPS[group][0]:
         if name in found:
             out.append("| " + " | ".join((name, str(len(found[name]["prism", "strength"])), *(cell(found[name].get(of, {}), digits, wanted) for _, of, digits, wanted in columns))) + " |")
+    return "\n".join(out)
+
+
+def strain_misfit(grade, value):
+    """Of a strain at f_c [1e-3], over EN 1992-1-1's."""
+    return f"{100 * (value / min(0.7 * GRADE[grade] ** 0.31, 2.8) - 1):+.0f} %"
+
+
+def newman_misfit(found, pressure):
+    s1, f_c = found.get((f"triaxial_{pressure}", "strength"), {}), found["prism", "strength"]
+    return f"{100 * (statistics.mean(s1.values()) / newman(statistics.mean(f_c.values()), pressure) - 1):+.0f}" if s1 else ""
+
+
+def grid(lines):
+    """Sets of `early` over Y_c and H_c."""
+    found = numbers_of(lines, "early")
+    out = ["| f_c, MPa; strain there over EN 1992-1-1; left at 3 times it; 5 MPa add | " + " | ".join(f"Y_c {over:g} f_c" for over in YIELDS) + " |", "|---" * (len(YIELDS) + 1) + "|"]
+    for grade in GRADE:
+        for slope in SLOPES:
+            cells = []
+            for over in YIELDS:
+                of = found[f"{grade}, Y_c {over:g} f_c, H_c {slope:g}"]
+                mean = {key: statistics.mean(of[key].values()) for key in (("prism", "strength"), ("prism", "peak_strain"), ("prism", "residual"), ("slope_5", ""))}
+                f_c, strain, left, added = mean.values()
+                cells.append(f"{f_c:.1f}; {strain_misfit(grade, strain)}; {left:.2f}; {added:.1f}")
+            out.append(f"| {grade}, H_c {slope:g} | " + " | ".join(cells) + " |")
+    return "\n".join(out)
+
+
+def bounds(lines):
+    """The other sets of `early`."""
+    found = numbers_of(lines, "early")
+    out = ["| 600 elements, n = 2 | f_c, MPa | strain there over EN 1992-1-1 | left at 3 times it | 5 MPa add | 5, 20, 50, 100 MPa over Newman, % | oedometer: strain at 1 GPa, % | rough over smooth prism; left, rough | rough cube over rough prism |", "|---" * 9 + "|"]
+    for name in GROUPS["early"][0]:
+        if name not in found or re.search(r"Y_c [\d.]+ f_c, H_c [\d.]+$", name) and "smooth" not in name:
+            continue
+        of = found[name]
+        cubes, prisms = of.get(("platens_cube", "strength"), {}), of.get(("platens_prism", "strength"), {})
+        over = {packing: cubes[packing] / prisms[packing] for packing in cubes if packing in prisms}
+        rough = cell(of["rough_over", ""], 2, None) + "; " + cell(of.get(("platens_prism", "residual"), {}), 2, None) if prisms else ""
+        pressed = ", ".join(text for pressure in (5, 20, 50, 100) if (text := newman_misfit(of, pressure)))
+        out.append("| " + " | ".join((name, cell(of["prism", "strength"], 1, None), strain_misfit(name.split(",")[0], statistics.mean(of["prism", "peak_strain"].values())), cell(of["prism", "residual"], 3, (0.1, 0.2)), cell(of["slope_5", ""], 1, (4.0, 5.0)),
+                                      pressed, cell(of.get(("oedometer", "strain_1000"), {}), 1, None), rough.removesuffix("; "), cell(over, 2, None))) + " |")
     return "\n".join(out)
 
 
@@ -296,7 +387,9 @@ def calibrated(lines, which):
 
 
 def markdown(lines, which):
-    """`alone`, `beside`, `compaction`, `slopes`, `calibrated CONCRETE`, `calibrated all`."""
+    """`alone`, `beside`, `compaction`, `slopes`, `calibrated CONCRETE`, `calibrated all`, `early grid`, `early bounds`."""
+    if which.startswith("early"):
+        return bounds(lines) if which.endswith("bounds") else grid(lines)
     if which.startswith("calibrated"):
         return calibrated(lines, which.removeprefix("calibrated").strip())
     return slopes(lines) if which == "slopes" else one_by_one(lines, which)

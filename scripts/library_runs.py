@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Concretes of `breccia materials` in specimens of `breccia test` and in two tests that it does not have, for docs/validation-concrete.md and docs/laboratory.md.
 
-    scripts/library_runs.py [--concretes C40,C60] [--packings 5,6,7] [--elements 1200,2400] [--binary build/release/breccia] [--device cpu] [--jobs 1] [--record FILE] [NAME...]
+    scripts/library_runs.py [--concretes C40,C60] [--packings 5,6,7] [--elements 1200,2400] [--binary build/release/breccia] [--device cpu] [--jobs 1] [--record FILE] [--plot FILE] [NAME...]
     NAME: a test of `breccia test`, prism_long, oedometer_unload; elements: of a prism of 0.1 x 0.1 x 0.2 m, half as many in the oedometer's cube of 0.1 m
 
 prism_long        the prism of `breccia test` with smooth ends, 0.6/s, to at least 3.1 times the strain of its peak
 oedometer_unload  the oedometer of `breccia test`, 4/s, which lengthens again by 5 % from 8.7 % of strain (of C30: 1 GPa) and is then pressed to 15 %
 
 The library's concretes run without local damping. The concrete "slab" is that of scripts/reinforced_tests.py, with 0.3, in the two tests alone. Cases and results are in out/library_runs/; called again,
-only what is missing is run. --record FILE replaces lines of concretes of the library in that file (docs/results/library.csv).
+only what is missing is run. --record FILE replaces lines of concretes of the library in that file (docs/results/library.csv). --plot FILE draws stress over strain of finished long prisms
+(needs python3-matplotlib; docs/library_prisms.png).
 """
 import argparse
 import csv
@@ -24,7 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "out" / "library_runs"
 AREA = 0.01  # of both specimens  [m2]
 SLAB = "slab"
-END = {SLAB: 9e-3, "C20": 9e-3, "C30": 10e-3, "C40": 12e-3, "C60": 14.5e-3, "C100": 18.5e-3}  # of the long prism  [s]
+END = {SLAB: 9e-3, "C20": 10.5e-3, "C30": 12e-3, "C40": 14e-3, "C60": 16e-3, "C100": 20e-3}  # of the long prism  [s]
 RECORD = ["material", "elements", "test", "specimen", "commit", "hash", "quantity", "unit", "value"]
 
 
@@ -156,14 +157,41 @@ def collected():
             yield dict(zip(RECORD, (concrete, str(made), name, packing, summary["breccia"]["commit"], summary["state_hash"], quantity, unit, f"{value:.9g}")))
 
 
+def by_code(f_c, strain):
+    """Stress [MPa] by EN 1992-1-1, 3.14, of a mean strength f_c [MPa], up to its last strain; strain [1e-3]."""
+    peak = min(0.7 * f_c**0.31, 2.8)
+    last = 3.5 if f_c < 58 else 2.8 + 27 * ((98 - f_c) / 100) ** 4
+    k, eta = 1.05 * 22 * (f_c / 10) ** 0.3 * peak / f_c, strain / peak
+    return f_c * (k * eta - eta**2) / (1 + (k - 2) * eta) if strain <= last else math.nan
+
+
+def plot(path):
+    """Long prisms of 1,200 elements that are there, beside the code's curves."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    figure, axis = plt.subplots(figsize=(8, 4.2))
+    for color, (concrete, f_c) in zip(("tab:blue", "tab:green", "tab:olive", "tab:orange", "tab:red"), (("C20", 28), ("C30", 38), ("C40", 48), ("C60", 68), ("C100", 108))):
+        for k, folder in enumerate(sorted(OUT.glob(f"prism_long-{concrete}-1200-*/"))):
+            _, strain, stress = curve(folder)
+            axis.plot([1e3 * e for e in strain], [1e-6 * s for s in stress], color=color, lw=0.8, label=f"{concrete}, a packing each" if not k else None)
+        strains = [0.01 * k for k in range(351)]
+        axis.plot(strains, [by_code(f_c, e) for e in strains], "--", color=color, lw=1.4, label="EN 1992-1-1" if concrete == "C20" else None)
+    axis.set(xlabel="strain, 1e-3", ylabel="stress, MPa", xlim=(0, 10), ylim=(0, 125))
+    published_runs.save_plot(figure, (axis,), path, columns=3)
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("names", nargs="*", default=list(TESTS))
     p.add_argument("--concretes", default="C30")
     p.add_argument("--packings", default="5,6,7")
     p.add_argument("--elements", default="1200")
+    p.add_argument("--plot", type=pathlib.Path)
     published_runs.add_options(p)
     given = p.parse_args()
+    if given.plot:
+        return plot(given.plot)
     OUT.mkdir(parents=True, exist_ok=True)
     published_runs.run_all(given.jobs, run, [(name, concrete, int(elements), int(packing), given) for name in given.names for concrete in given.concretes.split(",")
                                              for elements in given.elements.split(",") for packing in given.packings.split(",")])

@@ -3,11 +3,11 @@
 docs/validation-concrete.md;
 and where pulled ones part, for docs/theory.md.
 
-    scripts/localisation.py [--elements 2000] [--seeds 3] [--binary build/release/breccia] [--device cpu] [--jobs 1]
+    scripts/localisation.py [--concrete C30] [--elements 2000] [--seeds 3] [--binary build/release/breccia] [--device cpu] [--jobs 1]
     [-o out/localisation]
     scripts/localisation.py --pulled [--only TEXT] [--record docs/results/grips.csv]
 
-Prisms of c30 (cases/rc_slab, friction bounded) between smooth ends and between rough platens run with 20 frames. At the
+Prisms of c30 (cases/rc_slab, friction bounded), or of a concrete of the library, between smooth ends and between rough platens run with 20 frames. At the
 frame where the stress has fallen to half of the peak: broken links, and those of them broken since the peak. The band is the
 layer, a tenth of the height thick (20 mm), of the direction and place that hold most of the latter; a specimen that breaks
 alike everywhere has as many of them there as it has links there, and somewhat more, since the band is the best of many: as many
@@ -37,19 +37,19 @@ KEYS = ["friction_cap=3e6", "broken_friction=0.6", "broken_rolling_limit=1"]
 BAND = 0.02  # m
 
 
-def run(binary, out, test, elements, seed, device):
-    folder = out / f"{test}-{elements}-{seed}"
+def run(binary, out, test, elements, seed, device, concrete):
+    folder = out / f"{test}-{elements}-{seed}{concrete}"
     if (folder / "summary.json").exists():
         return folder
-    made = out / f"specimens-{elements}"
+    made = out / f"specimens-{elements}{concrete}"
     if not list(made.glob(f"cases/{test}-{seed}-*.toml")):
-        keys = [a for k in KEYS for a in ("--set", f"material.c30.{k}")]
+        keys = [a for k in ([f"use={concrete}"] if concrete else KEYS) for a in ("--set", f"material.c30.{k}")]
         subprocess.run([binary, "test", ROOT / "cases/rc_slab", "--material", "c30", *keys, "--only", test, "--first-seed",
                         str(seed), "--seeds", "1", "--elements", str(elements), "--threads", "1", "--device", device, "-o", made], check=True,
                        stdout=subprocess.DEVNULL)
     text = next(made.glob(f"cases/{test}-{seed}-*.toml")).read_text()
     text = text.replace("frames = 0", "frames = 20", 1).replace("fields = false", "fields = true", 1)
-    case = out / f"{test}-{elements}-{seed}.toml"
+    case = out / f"{folder.name}.toml"
     case.write_text(text)
     subprocess.run([binary, "run", case, "-o", folder, "--threads", "1", "--device", device, "--force", "--no-progress"], check=True,
                    stdout=subprocess.DEVNULL)
@@ -117,7 +117,7 @@ def looked_at(folder):
 
 def of_packing(what):
     given, test, seed = what
-    return looked_at(run(given.binary, given.out, test, given.elements, seed, given.device))
+    return looked_at(run(given.binary, given.out, test, given.elements, seed, given.device, given.concrete))
 
 
 def text(values, digits=0):
@@ -134,7 +134,8 @@ def markdown(records):
     lines = ["| prism | elements | n | strength, MPa | links broken at the peak; at half of it, % | of those broken in between, in the band, % | "
              "of all links, there, % | ratio | ratio of as many links drawn at random | band's slope, degrees |", "|---|---|---|---|---|---|---|---|---|---|"]
     for (test, elements), of in sorted(found.items(), key=lambda item: (item[0][1], item[0][0])):
-        lines.append(f"| {NAMES[test]} | {elements:,} | {len(of['peak'])} | {text(of['peak'], 1)} | {text(of['early'])}; {text(of['late'])} | "
+        name, *concrete = test.split()
+        lines.append(f"| {', '.join([NAMES[name], *concrete])} | {elements:,} | {len(of['peak'])} | {text(of['peak'], 1)} | {text(of['early'])}; {text(of['late'])} | "
                      f"{text(of['band'])} | {text(of['links'])} | {text(of['ratio'], 2)} | {text(of['chance'], 2)} | {text(of['angle'])} |")
     return "\n".join(lines)
 
@@ -317,11 +318,12 @@ def main():
     p = argparse.ArgumentParser()
     p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
     p.add_argument("-o", "--out", type=pathlib.Path, default=ROOT / "out" / "localisation")
+    p.add_argument("--concrete", default="", help="of the library, as C30")
     p.add_argument("--elements", type=int, default=2000)
     p.add_argument("--seeds", type=int, default=3)
     p.add_argument("--device", default="cpu")
     p.add_argument("--jobs", type=int, default=1)
-    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all specimens, as docs/results/localisation.csv")
+    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all specimens, as docs/results/localisation.csv; what it has of others stays")
     p.add_argument("--pulled", action="store_true")
     p.add_argument("--only", default="", help="of --pulled: settings that have this in their text")
     given = p.parse_args()
@@ -332,14 +334,11 @@ def main():
     for test in NAMES:
         with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
             all_of = list(pool.map(of_packing, [(given, test, seed) for seed in range(1, given.seeds + 1)]))
-        records += [{"test": test, "elements": given.elements, "seed": seed, "quantity": quantity, "value": f"{value:.9g}"}
+        records += [{"test": " ".join(filter(None, (test, given.concrete))), "elements": given.elements, "seed": seed, "quantity": quantity, "value": f"{value:.9g}"}
                     for seed, found in enumerate(all_of, 1) for quantity, value in found.items()]
     print(markdown(records))
     if given.record:
-        with open(given.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(records)
+        published_runs.merge_record(given.record, list(records[0]), records, ("test", "elements", "seed"))
 
 
 if __name__ == "__main__":

@@ -232,8 +232,8 @@ USUAL |= {name: 3900 for name in ("tied", *DROPS)}
 # Concretes of beams: E [GPa], the f_c that design rules ask for, and f_c of `breccia test` with elements of the beams' sizes (600, 1,200, 2,400 and
 # 4,800 in the prism; of the slab's concrete the last by interpolation)  [MPa]
 YOUNG = {"": 30e3, LIBRARY: 33.6e3}
-USUAL_STRENGTH = {"": F_C, LIBRARY: 37.8}
-STRENGTH = {"": {3900: 34.6, 15600: 31.6, 31200: 30.4}, LIBRARY: {3900: 39.5, 7800: 38.6, 15600: 37.8, 31200: 36.6}}
+USUAL_STRENGTH = {"": F_C, LIBRARY: 37.1}
+STRENGTH = {"": {3900: 34.6, 15600: 31.6, 31200: 30.4}, LIBRARY: {3900: 39.6, 7800: 38.4, 15600: 37.1, 31200: 34.9}}
 
 
 def parted(name):
