@@ -141,13 +141,15 @@ struct FrictionWork {
 /// @param stiffness  of the couple's springs, the greatest before  [Pa]
 /// @param drag       what friction pulled with before  [N/m]
 /// @param dt         the step that led here  [s]
-template <class R, class End>
-BR_HD inline void edge_push(const ContactPair& law, double scale, double stiffness, const R& drag,
-                            double dt, const End& from, const End& to, const TargetOf<R>& target,
-                            const Vec2Of<R> (&target_v)[3], EdgePushOf<R>& p) {
+/// @param target_v   velocities of the target's corners  [m/s]
+/// @param p          has the area coordinates of the edge's ends in the target
+template <class R, class End, class Velocities>
+BR_HD inline void push_edge(const ContactPair& law, double scale, double stiffness, const R& drag,
+                            double dt, const End& from, const End& to, const Velocities& target_v,
+                            EdgePushOf<R>& p) {
   EdgeOverlapOf<R>& o = p.overlap;
   const R zero = constant<R>(0.0), one = constant<R>(1.0);
-  p.touches = overlap_of_edge(from.position, to.position, target, o);
+  p.touches = overlap_of_ends(o);
   p.drag = zero;
   if (!any(p.touches)) return;
   const double penalty = scale * law.penalty;
@@ -177,6 +179,15 @@ BR_HD inline void edge_push(const ContactPair& law, double scale, double stiffne
   p.friction[0] = (pull * (one - share)) * along;
   p.friction[1] = (pull * share) * along;
   p.drag = select(p.touches, pull, zero);
+}
+/// The push of an edge in a target.
+template <class R, class End>
+BR_HD inline void edge_push(const ContactPair& law, double scale, double stiffness, const R& drag,
+                            double dt, const End& from, const End& to, const TargetOf<R>& target,
+                            const Vec2Of<R> (&target_v)[3], EdgePushOf<R>& p) {
+  target.coordinates(from.position, p.overlap.at_a);
+  target.coordinates(to.position, p.overlap.at_b);
+  push_edge(law, scale, stiffness, drag, dt, from, to, target_v, p);
 }
 
 /// The six edges of a couple one after the other; any couple.
@@ -373,6 +384,7 @@ struct CoupleForces {
     split(nodes[a[i]], xa, va);
     split(nodes[b[i]], xb, vb);
     state[i].scale = 1.0;
+    if (!meet(xa, xb)) return;
     inherit(parent_joint[i], law_of(i), state[i], xa, Target::of(xa), xb, Target::of(xb));
   }
   /// Force of `add_shape_forces` on a corner of one of the two.

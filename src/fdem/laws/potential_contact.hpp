@@ -21,6 +21,13 @@ struct TargetOf {
     l[2] = over_double * cross(x[1] - x[0], p - x[0]);
     l[0] = over_double * cross(x[2] - x[1], p - x[1]);
   }
+  /// Area coordinate k, to the bit; k need not be known in advance.
+  BR_HD R coordinate(int k, const Vec2Of<R>& p) const {
+    const Vec2Of<R> from = k == 0 ? x[1] : x[0];
+    const Vec2Of<R> edge = (k == 2 ? x[1] : x[2]) - from, way = p - from;
+    const R one = edge.x * way.y, other = edge.y * way.x;
+    return over_double * ((k == 1 ? other : one) - (k == 1 ? one : other));
+  }
   /// Gradient of area coordinate k.  [1/m]
   BR_HD Vec2Of<R> slope(int k) const {
     const Vec2Of<R> edge = x[(k + 2) % 3] - x[(k + 1) % 3];
@@ -71,13 +78,11 @@ struct EdgeOverlapOf {
 };
 using EdgeOverlap = EdgeOverlapOf<double>;
 
-/// The edge a -> b through a target. False if no part of it lies inside. Exact: phi is linear
-/// between the breaks where two area coordinates are least together (Munjiza 2004, 2.50-2.56).
+/// An edge through a target, by its ends' area coordinates there. False if no part of it lies
+/// inside. Exact: phi is linear between the breaks where two area coordinates are least together
+/// (Munjiza 2004, 2.50-2.56).
 template <class R>
-BR_HD inline auto overlap_of_edge(const Vec2Of<R>& a, const Vec2Of<R>& b, const TargetOf<R>& target,
-                                  EdgeOverlapOf<R>& o) {
-  target.coordinates(a, o.at_a);
-  target.coordinates(b, o.at_b);
+BR_HD inline auto overlap_of_ends(EdgeOverlapOf<R>& o) {
   o.begin = constant<R>(0.0);
   o.end = constant<R>(1.0);
   auto inside = o.end > o.begin;
@@ -85,10 +90,11 @@ BR_HD inline auto overlap_of_edge(const Vec2Of<R>& a, const Vec2Of<R>& b, const 
     const R la = o.at_a[k], lb = o.at_b[k];
     inside = inside && !(la <= 0.0 && lb <= 0.0);
     if (!any(inside)) return inside;
-    if (const auto begins = la < 0.0; any(begins))
-      o.begin = select(begins, max(o.begin, la / (la - lb)), o.begin);
-    if (const auto ends = lb < 0.0; any(ends))
-      o.end = select(ends, min(o.end, la / (la - lb)), o.end);
+    const auto begins = la < 0.0, ends = lb < 0.0;
+    if (!any(begins || ends)) continue;
+    const R at = la / (la - lb);
+    o.begin = select(begins, max(o.begin, at), o.begin);
+    o.end = select(ends, min(o.end, at), o.end);
   }
   inside = inside && o.end > o.begin;
   if (!any(inside)) return inside;
@@ -124,13 +130,24 @@ BR_HD inline auto overlap_of_edge(const Vec2Of<R>& a, const Vec2Of<R>& b, const 
   o.moment = constant<R>(0.0);
   R before = phi(s[0]);
   for (int i = 0; i < 4; ++i) {
-    const R after = phi(s[i + 1]), width = s[i + 1] - s[i];
+    const R width = s[i + 1] - s[i];
+    if (!any(width > 0.0)) continue;  // most edges have no more than one break
+    const R after = phi(s[i + 1]);
     o.whole += 0.5 * width * (before + after);
     o.moment +=
         (1.0 / 6.0) * width * (before * (2.0 * s[i] + s[i + 1]) + after * (s[i] + 2.0 * s[i + 1]));
     before = after;
   }
   return inside && o.whole > 0.0;
+}
+
+/// The edge a -> b through a target.
+template <class R>
+BR_HD inline auto overlap_of_edge(const Vec2Of<R>& a, const Vec2Of<R>& b, const TargetOf<R>& target,
+                                  EdgeOverlapOf<R>& o) {
+  target.coordinates(a, o.at_a);
+  target.coordinates(b, o.at_b);
+  return overlap_of_ends(o);
 }
 
 /// Adds a force on an edge's ends and its reaction on the target's corners: force and moment of the

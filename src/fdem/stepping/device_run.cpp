@@ -11,6 +11,7 @@
 #include "fdem/shape.hpp"
 #include "fdem/stepping/launches.hpp"
 #include "fdem/stepping/step.hpp"
+#include "fdem/stepping/wide_couples.hpp"
 #include "fdem/stepping/wide_joints.hpp"
 #include "fdem/stepping/wide_kernels.hpp"
 
@@ -32,10 +33,12 @@ Bounded<Kernel, blocks> bounded(const Kernel& kernel) {
   return {kernel};
 }
 
-/// From so many couples on those with work to do are listed first, and damaged joints: a launch
-/// more. Tests in Space::shadow see both ways.
-Index fewest_couples_listed(Space space) {
-  return space == Space::shadow ? 500 : 8'000;
+/// Whether couples with work to do are listed first, and damaged joints: a launch more. It pays
+/// from so many couples on, or from fewer where joints may be damaged, which take long. Tests in
+/// Space::shadow see both ways.
+bool lists_busy(const World& w) {
+  const Index couples = w.couples.size();
+  return couples >= (w.joints.size() > 0 || w.exec.space == Space::shadow ? 500 : 8'000);
 }
 /// Groups of threads that share a list out: as many as run at a time, and more.
 constexpr Index most_groups = 132 * 128;
@@ -45,8 +48,9 @@ template <class Number, class By>
 void launch_all_pairs(World& w, const By& by) {
   const Index joints = w.joints.size(), couples = w.couples.size();
   const JointForces<Number> joint = joint_kernel<Number>(w);
-  const CouplesWide<Number> wide{couple_kernel<Number>(w)};
-  const Index threads = couples * CouplesWide<Number>::width;
+  using Couples = CouplesWide<Number, true>;
+  const Couples wide{couple_kernel<Number>(w)};
+  const Index threads = couples * Couples::width;
   if (joints < fewest_joints_apart)
     return for_each_part(w.exec,
                          part(threads, by(wide), part(joints, by(bounded<4>(joint)), Parts<>{})));
@@ -54,20 +58,36 @@ void launch_all_pairs(World& w, const By& by) {
   for_each_part(w.exec, part(threads, by(wide), Parts<>{}));
 }
 
+/// Damaged joints and busy couples.
+template <class Number, bool any_couple, class By>
+void launch_busy(World& w, const By& by) {
+  using Joints = JointsWide<Number>;
+  using Couples = CouplesWide<Number, any_couple>;
+  const Index joints = w.joints.size(), couples = w.couples.size();
+  const Index groups = groups_of<Couples>(couples, most_groups),
+              joint_groups = groups_of<Joints>(joints, most_groups);
+  const auto wide_joints = by(BusyWide<Joints>{{joint_kernel<Number>(w)},
+                                               w.busy_joints.item.view(),
+                                               w.busy_joints.count.view(),
+                                               joint_groups});
+  const auto wide_couples = by(BusyWide<Couples>{
+      {couple_kernel<Number>(w)}, w.busy.item.view(), w.busy.count.view(), groups});
+  // Joints first: one takes longest. Both in registers of which four blocks fit.
+  for_each_part(w.exec, part(joint_groups * Joints::width, bounded<4>(wide_joints),
+                             part(groups * Couples::width, wide_couples, Parts<>{})));
+}
+
 /// First what takes little, and lists of couples that may meet and of damaged joints; then these.
 template <class Number, class By>
 void launch_busy_pairs(World& w, const By& by) {
-  using Couple = CoupleForces<Number>;
-  using Joint = JointForces<Number>;
+  using Couple = BeginningCouples<Number>;
   const Index joints = w.joints.size(), couples = w.couples.size();
-  const Couple couple = couple_kernel<Number>(w);
-  const Joint joint = joint_kernel<Number>(w);
-  const View<Index> busy = w.busy.item.view(), count = w.busy.count.view();
-  const View<Index> busy_joint = w.busy_joints.item.view(),
-                    joint_count = w.busy_joints.count.view();
-  const auto list_couples = by(ListBusy<Couple>{couple, busy, count});
+  const Couple couple{couple_kernel<Number>(w)};
+  const JointForces<Number> joint = joint_kernel<Number>(w);
+  const auto list_couples = by(ListBusy<Couple>{couple, w.busy.item.view(), w.busy.count.view()});
   const auto list_joints = [&](const auto& kernel) {
-    return by(ListBusy<std::remove_cvref_t<decltype(kernel)>>{kernel, busy_joint, joint_count});
+    return by(ListBusy<std::remove_cvref_t<decltype(kernel)>>{kernel, w.busy_joints.item.view(),
+                                                              w.busy_joints.count.view()});
   };
   if (joints < fewest_joints_apart) {
     for_each_part(w.exec, part(couples, list_couples,
@@ -76,16 +96,10 @@ void launch_busy_pairs(World& w, const By& by) {
     for_each_part(w.exec, part(joints, list_joints(bounded<8>(joint)), Parts<>{}));
     for_each_part(w.exec, part(couples, list_couples, Parts<>{}));
   }
-  using Joints = JointsWide<Number>;
-  using Couples = CouplesWide<Number>;
-  const Index groups = groups_of<Couples>(couples, most_groups),
-              joint_groups = groups_of<Joints>(joints, most_groups);
-  // Joints first: one takes longest.
-  for_each_part(w.exec,
-                part(joint_groups * Joints::width,
-                     by(BusyWide<Joints>{{joint}, busy_joint, joint_count, joint_groups}),
-                     part(groups * Couples::width,
-                          by(BusyWide<Couples>{{couple}, busy, count, groups}), Parts<>{})));
+  if (couple.conservative || couple.rebound.loses())
+    launch_busy<Number, true>(w, by);
+  else
+    launch_busy<Number, false>(w, by);
 }
 
 /// Joints and couples.
@@ -94,10 +108,10 @@ void launch_pairs(World& w, const By& by) {
   const Index joints = w.joints.size(), couples = w.couples.size();
   if (joints + couples == 0)  // triangles read corners ahead, which the move writes
     return for_each(w.exec, 1, by(Fence{}));
-  if (couples < fewest_couples_listed(w.exec.space))
-    launch_all_pairs<Number>(w, by);
-  else
+  if (lists_busy(w))
     launch_busy_pairs<Number>(w, by);
+  else
+    launch_all_pairs<Number>(w, by);
 }
 
 struct Launches {

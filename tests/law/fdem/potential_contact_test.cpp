@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <random>
 
 #include "fdem/stepping/step.hpp"
@@ -127,6 +129,24 @@ class Pairs {
   }
   std::mt19937_64 random_{11};
 };
+
+TEST(PotentialContact, one_area_coordinate_has_the_bits_of_all) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-1.0, 1.0);
+  const auto point = [&] { return Vec2{place(random), place(random)}; };
+  for (int turn = 0; turn < 1000; ++turn) {
+    const Vec2 corner[3] = {point(), point(), point()};
+    const Target target = Target::of(corner);
+    for (const Vec2& p : {point(), corner[turn % 3], 0.5 * (corner[0] + corner[1])}) {
+      double all[3];
+      target.coordinates(p, all);
+      for (int k = 0; k < 3; ++k) {
+        const double one = target.coordinate(k, p);
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(one), std::bit_cast<std::uint64_t>(all[k]));
+      }
+    }
+  }
+}
 
 TEST(PotentialContact, forces_and_moments_of_random_pairs_sum_to_zero) {
   Pairs pairs;
