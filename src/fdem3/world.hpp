@@ -211,6 +211,8 @@ double free_time_step(World& w);
 double choose_time_step(World& w);
 /// The step to come, or less where these allow less: after their joints have changed.
 double shortened_time_step(World& w, const Buffer<Index>& tetrahedra);
+/// Shortened by the elements in reach that can touch by the marks of now.
+double step_shortened_by_marks(World& w);
 /// Wakes joints whose strength is reached.
 void wake_joints(World& w);
 void evaluate_forces(World& w);

@@ -138,7 +138,8 @@ void mark_vertices(World& w, Buffer<std::uint8_t>& marked) {
   for_each(w.exec, marked.size(),
            KeepExpected{std::as_const(w.exposed.vertex).view(), marked.view()});
   w.exposed.vertex.swap(marked);
-  copy_to(w.exposed.changed, std::vector<std::uint8_t>{0, 0});
+  w.exposed.changed.clear();
+  w.exposed.changed.resize(2);
 }
 
 /// Marks the vertices of joints that are about to be damaged.
@@ -205,27 +206,12 @@ auto may_touch_now(World& w) {
       w.couples.pairs.b.view()};
 }
 
-/// Of listed elements those that can touch by the marks of now.
-template <class Touches>
-struct TouchableListed {
-  Touches touches;
-  View<const Index> listed;
-  BR_HD bool operator()(Index i) const { return touches(listed[i]); }
-};
-/// The elements that can touch, by the marks of now.
+/// Whether an element can touch by the marks of now.
 template <class World>
-Buffer<Index> touchable_now(World& w) {
-  using Shape = ShapeOf<World>;
+auto touchable_now(World& w) {
   const auto holds = w.given->holds.view();
-  using Touches = Touchable<Shape, std::remove_cvref_t<decltype(holds[0])>>;
-  const auto listed = std::as_const(w.reach.element).view();
-  const Buffer<Index> at = items_where(
-      w.exec, listed.size,
-      TouchableListed<Touches>{
-          {open_vertices(w), std::as_const(Shape::elements(w).hold).view(), holds}, listed});
-  Buffer<Index> touchable(w.reach.element);
-  gather(w.exec, at, touchable);
-  return touchable;
+  return Touchable<ShapeOf<World>, std::remove_cvref_t<decltype(holds[0])>>{
+      open_vertices(w), std::as_const(ShapeOf<World>::elements(w).hold).view(), holds};
 }
 
 /// Couples that waited and may touch from now on. All that waits is new.

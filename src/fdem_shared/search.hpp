@@ -319,7 +319,7 @@ void find_mesh_couples(World& w) {
   }
   collective_try(w.domain.ranks, [&w] { search(w); });
   select_active_ghosts(w);
-  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, touchable_now(w));
+  if (joints_changed && w.next_dt > 0.0) w.next_dt = step_shortened_by_marks(w);
 }
 
 template <class World>
@@ -359,7 +359,7 @@ bool follow_mesh_marks(World& w) {
       OpenWaiting<std::remove_const_t<decltype(may_touch)>, std::remove_const_t<decltype(parents)>>{
           may_touch, parents, w.couple_phase.view()});
   w.held_couples.known = false;
-  if (w.next_dt > 0.0) w.next_dt = shortened_time_step(w, touchable_now(w));
+  if (w.next_dt > 0.0) w.next_dt = step_shortened_by_marks(w);
   return true;
 }
 

@@ -9,6 +9,7 @@
 #include "domain/owned.hpp"
 #include "exec/timers.hpp"
 #include "fdem_shared/bundle_steps.hpp"
+#include "fdem_shared/open_vertices.hpp"
 #include "fdem_shared/ranks.hpp"
 #include "fdem_shared/rigid_bodies.hpp"
 #include "fdem_shared/shape.hpp"
@@ -22,6 +23,18 @@ struct ListedStableStep {
   StableStep stable;
   View<const Index> listed;
   BR_HD double operator()(Index i) const { return stable(listed[i]); }
+};
+
+/// Of those of a list the stable step where they can touch; elsewhere any will do.
+template <class Touches, class StableStep>
+struct StableWhere {
+  Touches touches;
+  StableStep stable;
+  View<const Index> listed;
+  BR_HD double operator()(Index i) const {
+    const Index t = listed[i];
+    return touches(t) ? stable(t) : largest_least;
+  }
 };
 
 /// The second law of motion with the arrays of a world.
@@ -119,6 +132,20 @@ double world_shortened_step(World& w, const Buffer<Index>& listed) {
   const Stable stable{stable_step(w), listed.view()};
   const double least = w.domain.least(fold_owned(w.exec, w.domain, listed.size(), largest_least,
                                                  stable, Least{}, ListedElement<>{listed.view()}));
+  return std::min(w.next_dt, world_allowed_step(w)(least, w.last_dt));
+}
+
+/// As that, by the elements in reach that can touch by the marks of now.
+template <class World>
+double world_step_by_marks(World& w) {
+  if (bundles_bound(w)) return std::min(w.next_dt, world_time_step(w));
+  const StageTime timed(w.exec, "time_step");
+  const auto touchable = touchable_now(w);
+  const View<const Index> listed = std::as_const(w.reach.element).view();
+  using Stable = StableWhere<std::remove_const_t<decltype(touchable)>, decltype(stable_step(w))>;
+  const double least = w.domain.least(fold_owned(w.exec, w.domain, listed.size, largest_least,
+                                                 Stable{touchable, stable_step(w), listed}, Least{},
+                                                 ListedElement<>{listed}));
   return std::min(w.next_dt, world_allowed_step(w)(least, w.last_dt));
 }
 

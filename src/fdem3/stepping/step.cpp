@@ -67,6 +67,9 @@ double choose_time_step(World& w) {
 double shortened_time_step(World& w, const Buffer<Index>& tetrahedra) {
   return fdem_shared::world_shortened_step(w, tetrahedra);
 }
+double step_shortened_by_marks(World& w) {
+  return fdem_shared::world_step_by_marks(w);
+}
 
 void StepwiseRun::load_forces(World& w) const {
   if (w.given->flow.on) flow_on(w);
