@@ -1,126 +1,26 @@
 #include "core/broad_phase.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "core/box_sizes.hpp"
 #include "core/cell_grid.hpp"
 #include "core/step_clock.hpp"
 #include "exec/error.hpp"
+#include "exec/sort_scan_device.hpp"
 
 namespace breccia {
 namespace {
 
-constexpr Index none = std::numeric_limits<Index>::max();
-
 /// Partners that an element notes when it first meets them: enough for nearly all elements of a
 /// packing, which find about five each.
 constexpr Index slots_each = 12;
-
-/// Sizes of all boxes together, from which the cells follow.
-struct Extent {
-  double plane = -1.0;                                   ///< longest edge in x or y  [m]
-  double size = -1.0;                                    ///< longest edge  [m]
-  double reach = 0.0;                                    ///< largest coordinate  [m]
-  double lowest = std::numeric_limits<double>::max();    ///< first start in z  [m]
-  double highest = -std::numeric_limits<double>::max();  ///< last start in z  [m]
-  Index infinite = none;                                 ///< first box that is not finite
-  Index swapped = none;                                  ///< first box with low above high
-};
-
-struct MeasureBox {
-  static constexpr const char* name = "core.measure_box";
-  View<const Box> boxes;
-
-  BR_HD Extent operator()(Index i) const {
-    const Vec3 low = boxes[i].low, high = boxes[i].high;
-    Extent extent;
-    if (!finite(low) || !finite(high)) {
-      extent.infinite = i;
-      return extent;
-    }
-    if (low.x > high.x || low.y > high.y || low.z > high.z) extent.swapped = i;
-    extent.plane = max(high.x - low.x, high.y - low.y);
-    extent.size = max(extent.plane, high.z - low.z);
-    extent.reach = max(reach(low), reach(high));
-    extent.lowest = extent.highest = low.z;
-    return extent;
-  }
-
- private:
-  BR_HD static bool finite(const Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  }
-  BR_HD static double reach(const Vec3& v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
-};
-
-struct JoinExtents {
-  BR_HD Extent operator()(const Extent& a, const Extent& b) const {
-    Extent both;
-    both.plane = max(a.plane, b.plane);
-    both.size = max(a.size, b.size);
-    both.reach = max(a.reach, b.reach);
-    both.lowest = min(a.lowest, b.lowest);
-    both.highest = max(a.highest, b.highest);
-    both.infinite = Least{}(a.infinite, b.infinite);
-    both.swapped = Least{}(a.swapped, b.swapped);
-    return both;
-  }
-};
-
-/// The largest box of each level.
-struct LevelSizes {
-  double size[finest_level + 1];
-};
-
-/// Largest box of each level in one chunk of boxes.
-struct MeasureLevels {
-  static constexpr const char* name = "core.measure_levels";
-  CellGrid grid;
-  View<const Box> boxes;
-
-  BR_HD LevelSizes operator()(Index chunk) const {
-    LevelSizes sizes = no_sizes();
-    const Index first = chunk * fold_chunk;
-    const Index end = first + fold_chunk < boxes.size ? first + fold_chunk : boxes.size;
-    for (Index i = first; i < end; ++i) {
-      double& size = sizes.size[grid.level(boxes[i])];
-      size = max(size, grid.size(boxes[i]));
-    }
-    return sizes;
-  }
-  BR_HD static LevelSizes no_sizes() {
-    LevelSizes sizes;
-    for (double& size : sizes.size) size = -1.0;
-    return sizes;
-  }
-};
-
-struct JoinLevels {
-  BR_HD LevelSizes operator()(const LevelSizes& a, const LevelSizes& b) const {
-    LevelSizes both;
-    for (Index level = 0; level <= finest_level; ++level)
-      both.size[level] = max(a.size[level], b.size[level]);
-    return both;
-  }
-};
-
-/// Largest box of each level, by all threads of a device: bits of the size plus one; zero: no box.
-struct NoteLevelSize {
-  static constexpr const char* name = "core.note_level_size";
-  CellGrid grid;
-  View<const Box> boxes;
-  View<std::uint64_t> noted;
-
-  BR_HD void operator()([[maybe_unused]] Index i) const {
-#if defined(__CUDA_ARCH__)
-    auto* const size = reinterpret_cast<unsigned long long*>(&noted[grid.level(boxes[i])]);
-    const unsigned long long own = ordered_bits(grid.size(boxes[i])) + 1;
-    if (__ldcg(size) < own) atomicMax(size, own);
-#endif
-  }
-};
+/// Partners with higher ids that there is room for in rows, and the most elements that have them: a
+/// device then needs not sort pairs.
+constexpr Index slots_of_row = 32, most_in_rows = 2'000'000;
 
 LevelSizes level_sizes(const Exec& exec, const CellGrid& grid, View<const Box> boxes) {
   if (exec.space != Space::cuda)
@@ -145,21 +45,45 @@ struct NumberCell {
   BR_HD void operator()(Index i) const { cells[i] = {grid.key(boxes[i]), i}; }
 };
 
+/// Numbers and elements in arrays of their own, as a device sorts them.
+struct NumberCellApart {
+  static constexpr const char* name = "core.number_cell";
+  CellGrid grid;
+  View<const Box> boxes;
+  View<std::uint64_t> keys;
+  View<Index> items;
+
+  BR_HD void operator()(Index i) const {
+    keys[i] = grid.key(boxes[i]);
+    items[i] = i;
+  }
+};
+
+struct SplitCell {
+  static constexpr const char* name = "core.split_cell";
+  View<const KeyedIndex> cells;
+  View<std::uint64_t> keys;
+  View<Index> items;
+
+  BR_HD void operator()(Index p) const {
+    keys[p] = cells[p].key;
+    items[p] = cells[p].item;
+  }
+};
+
 /// Boxes and ranks side by side in the order of the cells, so that neighbours are read in a row.
 struct SortElements {
   static constexpr const char* name = "core.sort_elements";
-  View<const KeyedIndex> cells;
+  View<const Index> items;
   View<const Box> boxes;
   View<const Index> rank_of;
-  View<std::uint64_t> keys;
   View<Box> sorted_boxes;
   View<Index> ranks;
 
   BR_HD void operator()(Index p) const {
-    const KeyedIndex cell = cells[p];
-    keys[p] = cell.key;
-    sorted_boxes[p] = boxes[cell.item];
-    ranks[p] = rank_of[cell.item];
+    const Index item = items[p];
+    sorted_boxes[p] = boxes[item];
+    ranks[p] = rank_of[item];
   }
 };
 
@@ -183,10 +107,30 @@ struct NotePair {
   }
 };
 
+/// Notes each pair in the row of its lower rank, in any order.
+struct NoteInRow {
+  LeftOut left_out;
+  View<Index> counts;    ///< of each rank; zero before
+  View<Index> slots;     ///< the higher ranks
+  View<Index> overflow;  ///< one item: other than 0 where a row has more than its slots
+
+  BR_HD void operator()(Index p, Index q) const {
+    if (left_out(p, q)) return;
+    const Index one = left_out.ranks[p], other = left_out.ranks[q];
+    const Index low = one < other ? one : other, high = one < other ? other : one;
+    const Index place = count_up(counts[low]);
+    if (place < slots_of_row)
+      slots[low * slots_of_row + place] = high;
+    else
+      count_up(overflow[0]);
+  }
+};
+
+template <class Note>
 struct FindPairs {
   static constexpr const char* name = "core.find_pairs";
   CellWalk cells;
-  NotePair note;
+  Note note;
   View<std::int64_t> tests;
 
   BR_HD void operator()(Index run) const {
@@ -259,6 +203,47 @@ struct UnpackPairs {
   }
 };
 
+/// Pairs of one row, ascending.
+struct WriteRow {
+  static constexpr const char* name = "core.write_row";
+  View<const Index> starts;
+  View<Index> slots;
+  View<const KeyedIndex> by_id;
+  View<PairKey> key;
+  View<Index> a, b;
+
+  struct Before {
+    BR_HD bool operator()(Index one, Index other) const { return one < other; }
+  };
+  BR_HD void operator()(Index low) const {
+    const Index start = starts[low], count = starts[low + 1] - start;
+    if (count == 0) return;
+    Index* const row = &slots[low * slots_of_row];
+    if (count > 1) sort_row(row, count, Before{});
+    const KeyedIndex own = by_id[low];
+    for (Index k = 0; k < count; ++k) {
+      const KeyedIndex high = by_id[row[k]];
+      key[start + k] = own.key << 32 | high.key;
+      a[start + k] = own.item;
+      b[start + k] = high.item;
+    }
+  }
+};
+
+/// Ranks of elements whose ids ascend.
+struct RankInOrder {
+  static constexpr const char* name = "core.rank_in_order";
+  View<const GlobalId> ids;
+  View<KeyedIndex> by_id;
+  View<Index> rank_of;
+
+  BR_HD void operator()(Index i) const {
+    BR_ASSERT(ids[i] >= 0);
+    by_id[i] = {static_cast<std::uint32_t>(ids[i]), i};
+    rank_of[i] = i;
+  }
+};
+
 struct NoteId {
   static constexpr const char* name = "core.note_id";
   View<const GlobalId> ids;
@@ -274,7 +259,7 @@ struct NoteId {
 struct NotAscending {
   View<const KeyedIndex> by_id;
 
-  BR_HD Index operator()(Index i) const { return by_id[i].key < by_id[i + 1].key ? none : i; }
+  BR_HD Index operator()(Index i) const { return by_id[i].key < by_id[i + 1].key ? no_box : i; }
 };
 
 struct RankElement {
@@ -299,7 +284,8 @@ T item_of(const Buffer<T>& items, Index i) {
 
 CellGrid grid_for(const Exec& exec, const Extent& extent, View<const Box> boxes) {
   CellGrid grid;
-  grid.planar = extent.lowest == extent.highest;
+  grid.planar = extent.first.z == extent.last.z;
+  grid.first = extent.first;
   const double size = grid.planar ? extent.plane : extent.size;
   if (size > 0.0) grid.largest = size;
   const LevelSizes sizes = level_sizes(exec, grid, boxes);
@@ -313,6 +299,17 @@ CellGrid grid_for(const Exec& exec, const Extent& extent, View<const Box> boxes)
     grid.occupied |= 1U << level;
     grid.inverse[level] = 1.0 / max((1.0 + 1.0 / 256.0) * width, smallest);
   }
+  const auto bits = [&](auto cell_of, int most) {
+    std::int64_t cells = 0;
+    for (Index level = 0; level <= finest_level; ++level)
+      if ((grid.occupied >> level & 1U) != 0) cells = std::max(cells, cell_of(level));
+    return std::min(most, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(cells + 4))));
+  };
+  grid.x_bits = bits([&](Index l) { return grid.cell_x(extent.last, l); }, CellGrid::most_x_bits);
+  grid.y_bits = bits([&](Index l) { return grid.cell_y(extent.last, l); }, CellGrid::most_bits);
+  grid.z_bits =
+      grid.planar ? 0
+                  : bits([&](Index l) { return grid.cell_z(extent.last, l); }, CellGrid::most_bits);
   return grid;
 }
 
@@ -324,10 +321,10 @@ Index run_length(const Exec& exec, Index count) {
 }
 
 void check(const Extent& extent, const Buffer<GlobalId>& ids) {
-  if (extent.infinite != none)
+  if (extent.infinite != no_box)
     throw NumericsError("element " + std::to_string(item_of(ids, extent.infinite)) +
                         " has a position or size that is not a finite number");
-  if (extent.swapped != none)
+  if (extent.swapped != no_box)
     throw InputError("element " + std::to_string(item_of(ids, extent.swapped)) +
                      " has a negative size");
 }
@@ -337,29 +334,31 @@ void check(const Extent& extent, const Buffer<GlobalId>& ids) {
 BroadPhase::BroadPhase(Space space)
     : cells_(space),
       keys_(space),
+      items_(space),
+      item_scratch_(space),
       boxes_(space),
       ranks_(space),
       by_id_(space),
       rank_of_(space),
       starts_(space),
       slots_(space),
+      overflow_(space),
       packed_(space),
       scratch_(space),
       tests_(space) {}
 
-void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids) {
+void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids, bool in_order) {
   const Index count = ids.size();
   by_id_.resize_unfilled(count);
   rank_of_.resize_unfilled(count);
+  if (in_order)
+    return for_each(exec, count, RankInOrder{ids.view(), by_id_.view(), rank_of_.view()});
   for_each(exec, count, NoteId{ids.view(), by_id_.view()});
-  const NotAscending not_ascending{by_id_.view()};
-  if (fold(exec, count - 1, none, not_ascending, Least{}) != none) {
-    sort_by_key(exec, by_id_);
-    const Index twin = fold(exec, count - 1, none, not_ascending, Least{});
-    if (twin != none)
-      throw InputError("two elements have the global id " +
-                       std::to_string(item_of(by_id_, twin).key));
-  }
+  sort_by_key(exec, by_id_);
+  const Index twin = fold(exec, count - 1, no_box, NotAscending{by_id_.view()}, Least{});
+  if (twin != no_box)
+    throw InputError("two elements have the global id " +
+                     std::to_string(item_of(by_id_, twin).key));
   for_each(exec, count, RankElement{by_id_.view(), rank_of_.view()});
 }
 
@@ -376,35 +375,81 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
     throw DeviceError("one search holds at most 178 million elements; use more ranks");
 
   // Bounding values, and the width of the cells.
-  const Extent extent = fold(exec, count, Extent{}, MeasureBox{boxes.view()}, JoinExtents{});
+  const Extent extent =
+      fold(exec, count, Extent{}, MeasureBox{boxes.view(), ids.view()}, JoinExtents{});
   check(extent, ids);
   const CellGrid grid = grid_for(exec, extent, boxes.view());
-  rank_elements(exec, ids);
+  rank_elements(exec, ids, extent.unordered == no_box);
 
-  // Elements in the order of their cells.
-  cells_.resize_unfilled(count);
+  sort_elements(exec, grid, boxes);
+
+  const CellWalk walk{grid, run_length(exec, count), std::as_const(keys_).view(),
+                      std::as_const(boxes_).view()};
+  if (exec.space != Space::host && count <= most_in_rows && !rows_overflow_) {
+    if (list_by_rows(exec, walk, known, pairs)) return;
+    rows_overflow_ = true;  // and will again
+  }
+  list_sorted(exec, walk, known, pairs);
+}
+
+void BroadPhase::sort_elements(const Exec& exec, const CellGrid& grid, const Buffer<Box>& boxes) {
+  const Index count = boxes.size();
   keys_.resize_unfilled(count);
+  items_.resize_unfilled(count);
   boxes_.resize_unfilled(count);
   ranks_.resize_unfilled(count);
-  for_each(exec, count, NumberCell{grid, boxes.view(), cells_.view()});
-  sort_by_key(exec, cells_);
+  if (exec.space == Space::cuda) {
+    for_each(exec, count, NumberCellApart{grid, boxes.view(), keys_.view(), items_.view()});
+    sort_pairs_on_device(keys_, items_, scratch_, item_scratch_, grid.key_bits());
+  } else {
+    cells_.resize_unfilled(count);
+    for_each(exec, count, NumberCell{grid, boxes.view(), cells_.view()});
+    sort_by_key(exec, cells_);
+    for_each(exec, count, SplitCell{std::as_const(cells_).view(), keys_.view(), items_.view()});
+  }
   for_each(exec, count,
-           SortElements{cells_.view(), boxes.view(), rank_of_.view(), keys_.view(), boxes_.view(),
-                        ranks_.view()});
+           SortElements{std::as_const(items_).view(), boxes.view(), std::as_const(rank_of_).view(),
+                        boxes_.view(), ranks_.view()});
+}
 
+bool BroadPhase::list_by_rows(const Exec& exec, const CellWalk& walk, const KnownPairs& known,
+                              Pairs& pairs) {
+  const Index count = boxes_.size(), runs = (count + walk.run_length - 1) / walk.run_length;
+  tests_.resize_unfilled(runs);
+  starts_.clear();
+  starts_.resize(count + 1);
+  overflow_.clear();
+  overflow_.resize(1);
+  slots_.resize_unfilled(count * slots_of_row);
+  const LeftOut left_out{known, std::as_const(ranks_).view()};
+  const NoteInRow note{left_out, starts_.view(), slots_.view(), overflow_.view()};
+  for_each(exec, runs, FindPairs<NoteInRow>{walk, note, tests_.view()});
+  const Scanned scanned = exclusive_scan(exec, starts_, overflow_);
+  if (scanned.flag != 0) return false;
+  const auto found = static_cast<Index>(scanned.total);
+  pairs.each_field(
+      [found](const char*, const char*, auto& array) { array.resize_unfilled(found); });
+  for_each(exec, count,
+           WriteRow{std::as_const(starts_).view(), slots_.view(), std::as_const(by_id_).view(),
+                    pairs.key.view(), pairs.a.view(), pairs.b.view()});
+  return true;
+}
+
+void BroadPhase::list_sorted(const Exec& exec, const CellWalk& walk, const KnownPairs& known,
+                             Pairs& pairs) {
   // Count, scan, fill.
-  const CellWalk walk{grid, run_length(exec, count), keys_.view(), boxes_.view()};
-  const Index runs = (count + walk.run_length - 1) / walk.run_length;
+  const Index count = boxes_.size(), runs = (count + walk.run_length - 1) / walk.run_length;
   tests_.resize_unfilled(runs);
   starts_.clear();
   starts_.resize(count + 1);
   slots_.resize_unfilled(count * slots_each);
-  const LeftOut left_out{known, ranks_.view()};
-  for_each(exec, runs, FindPairs{walk, {left_out, starts_.view(), slots_.view()}, tests_.view()});
+  const LeftOut left_out{known, std::as_const(ranks_).view()};
+  const NotePair note{left_out, starts_.view(), slots_.view()};
+  for_each(exec, runs, FindPairs<NotePair>{walk, note, tests_.view()});
   const Index found = exclusive_scan(exec, starts_);
   packed_.resize_unfilled(found);
   const int rank_bits = std::bit_width(static_cast<std::uint32_t>(count));
-  const PackPair pack{ranks_.view(), rank_bits};
+  const PackPair pack{std::as_const(ranks_).view(), rank_bits};
   for_each(
       exec, runs,
       PackPairs{

@@ -16,15 +16,20 @@ constexpr Index finest_level = 31;
 ///
 /// Two boxes that overlap, neither larger than the largest of a level, lie in cells of that level
 /// at most one apart on each axis: their low corners differ by no more than 256/257 cell widths,
-/// and the place in cells, at most 2^42, is rounded by less than 1/1024. Cells further out than
-/// that are counted as the outermost one, which brings no two neighbours further apart.
+/// and the place in cells, at most 2^42 from the first, is rounded by no more than 1/1024: twice,
+/// as it is counted from there and as it is divided. Cells further out than that are counted as the
+/// outermost one, which brings no two neighbours further apart.
 struct CellGrid {
   double largest = -1.0;       ///< size of the largest box, below 0 if all are points  [m]
   bool planar = false;         ///< all boxes start at the same z: one layer of cells
   std::uint32_t occupied = 0;  ///< bit l: some box belongs to level l
   double inverse[finest_level + 1] = {};  ///< 1 / width of the cells of each level  [1/m]
+  Vec3 first;  ///< least low corner of all boxes: cells are counted from there  [m]
+  /// Of a cell's number: enough for the cells that low corners have, and those next to them, but no
+  /// more than these.
+  int x_bits = most_x_bits, y_bits = most_bits, z_bits = most_bits;
 
-  static constexpr int x_bits = 21, y_bits = 19, z_bits = 19;
+  static constexpr int most_x_bits = 21, most_bits = 19, level_bits = 5;
 
   /// The longest edge of a box that the grid knows of.
   BR_HD double size(const Box& box) const {
@@ -44,27 +49,40 @@ struct CellGrid {
     const auto whole = static_cast<std::int64_t>(t);
     return whole - (t < static_cast<double>(whole) ? 1 : 0);
   }
-  BR_HD std::int64_t layer(double place, Index level) const {
-    return planar ? 0 : cell(place, level);
+  /// Of a place, which cell of a level along each axis.
+  BR_HD std::int64_t cell_x(const Vec3& place, Index level) const {
+    return cell(place.x - first.x, level);
+  }
+  BR_HD std::int64_t cell_y(const Vec3& place, Index level) const {
+    return cell(place.y - first.y, level);
+  }
+  BR_HD std::int64_t cell_z(const Vec3& place, Index level) const {
+    return planar ? 0 : cell(place.z - first.z, level);
   }
 
-  /// The number of a cell along x, modulo 2^21; the seam lies far from zero.
-  BR_HD static constexpr std::uint64_t column(std::int64_t x) {
-    return static_cast<std::uint64_t>(x + (1LL << (x_bits - 1))) & ((1ULL << x_bits) - 1);
+  /// The number of a cell along x, modulo 2^x_bits; the seam lies before the first cell but one.
+  BR_HD std::uint64_t column(std::int64_t x) const {
+    return static_cast<std::uint64_t>(x + 1) & ((1ULL << x_bits) - 1);
   }
-  /// The number of the first cell of a row: level, z and y modulo 2^19.
-  BR_HD static constexpr std::uint64_t row(Index level, std::int64_t z, std::int64_t y) {
+  /// The number of the first cell of a row: level, z and y modulo 2^z_bits and 2^y_bits.
+  BR_HD std::uint64_t row(Index level, std::int64_t z, std::int64_t y) const {
     const auto wrapped_z = static_cast<std::uint64_t>(z) & ((1ULL << z_bits) - 1);
     const auto wrapped_y = static_cast<std::uint64_t>(y) & ((1ULL << y_bits) - 1);
     return (static_cast<std::uint64_t>(level) << (x_bits + y_bits + z_bits)) |
            (wrapped_z << (x_bits + y_bits)) | (wrapped_y << x_bits);
   }
-  BR_HD static constexpr Index level_of(std::uint64_t key) {
+  BR_HD Index level_of(std::uint64_t key) const {
     return static_cast<Index>(key >> (x_bits + y_bits + z_bits));
+  }
+  /// Keys are below 2 to this.
+  int key_bits() const {
+    int levels = 0;
+    while (levels < level_bits && (occupied >> (1U << levels)) != 0) ++levels;
+    return levels + x_bits + y_bits + z_bits;
   }
   BR_HD std::uint64_t key(const Box& box) const {
     const Index own = level(box);
-    return row(own, layer(box.low.z, own), cell(box.low.y, own)) | column(cell(box.low.x, own));
+    return row(own, cell_z(box.low, own), cell_y(box.low, own)) | column(cell_x(box.low, own));
   }
 };
 
@@ -94,13 +112,13 @@ struct CellWalk {
   /// number of comparisons.
   template <class Found>
   BR_HD std::int64_t walk(Index begin, Index end, const Found& found) const {
-    const Index finest = CellGrid::level_of(keys[end - 1]);
+    const Index finest = grid.level_of(keys[end - 1]);
     std::int64_t tests = 0;
     for (Index level = 0; level <= finest; ++level) {
       if ((grid.occupied >> level & 1U) == 0) continue;
       Index cursors[9] = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
       for (Index p = begin; p < end; ++p)
-        if (CellGrid::level_of(keys[p]) >= level) tests += walk_level(level, p, cursors, found);
+        if (grid.level_of(keys[p]) >= level) tests += walk_level(level, p, cursors, found);
     }
     return tests;
   }
@@ -109,22 +127,22 @@ struct CellWalk {
   template <class Found>
   BR_HD std::int64_t walk_level(Index level, Index p, Index* cursors, const Found& found) const {
     const Box box = boxes[p];
-    const bool own_level = CellGrid::level_of(keys[p]) == level;
-    const std::int64_t x = grid.cell(box.low.x, level), y = grid.cell(box.low.y, level),
-                       z = grid.layer(box.low.z, level);
+    const bool own_level = grid.level_of(keys[p]) == level;
+    const std::int64_t x = grid.cell_x(box.low, level), y = grid.cell_y(box.low, level),
+                       z = grid.cell_z(box.low, level);
     // A partner starts no later than this box ends.
-    const std::int64_t x_last = grid.cell(box.high.x, level), y_last = grid.cell(box.high.y, level),
-                       z_last = grid.layer(box.high.z, level);
-    const std::uint64_t begin = CellGrid::column(x - 1), last = CellGrid::column(x_last);
-    constexpr std::uint64_t seam = (1ULL << CellGrid::x_bits) - 1;
+    const std::int64_t x_last = grid.cell_x(box.high, level), y_last = grid.cell_y(box.high, level),
+                       z_last = grid.cell_z(box.high, level);
+    const std::uint64_t begin = grid.column(x - 1), last = grid.column(x_last);
+    const std::uint64_t seam = (1ULL << grid.x_bits) - 1;
 
     std::int64_t tests = 0;
     for (std::int64_t row_z = own_level || grid.planar ? z : z - 1; row_z <= z_last; ++row_z) {
       for (std::int64_t row_y = own_level && row_z == z ? y : y - 1; row_y <= y_last; ++row_y) {
-        const std::uint64_t row = CellGrid::row(level, row_z, row_y);
+        const std::uint64_t row = grid.row(level, row_z, row_y);
         const bool own_row = own_level && row_z == z && row_y == y;
         Index& cursor = cursors[3 * (row_z - z + 1) + (row_y - y + 1)];
-        const std::uint64_t from = own_row ? CellGrid::column(x) : begin;
+        const std::uint64_t from = own_row ? grid.column(x) : begin;
         cursor = own_row ? p + 1 : seek(cursor, row | from);
         if (from <= last) {
           tests += compare(p, box, cursor, row | last, found);

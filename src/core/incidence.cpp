@@ -74,7 +74,8 @@ void build_incidence(const Exec& exec, const Buffer<Index>& a, const Buffer<Inde
   clear_bytes(starts.data(), starts.space(),
               static_cast<std::size_t>(starts.size()) * sizeof(Index));
   for_each(exec, pairs, CountEnds{a.view(), b.view(), starts.view()});
-  incidence.entries.resize_unfilled(exclusive_scan(exec, starts));
+  exclusive_scan(exec, starts, 2 * pairs);
+  incidence.entries.resize_unfilled(2 * pairs);
   Buffer<Index> next(starts);
   for_each(exec, pairs, PlaceEnds{a.view(), b.view(), next.view(), incidence.entries.view()});
   for_each(exec, elements,

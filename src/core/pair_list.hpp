@@ -43,10 +43,13 @@ struct GatherItems {
   static constexpr const char* name = "core.gather_items";
   View<const Index> source;
   View<const T> from;
-  View<T> to;  ///< zero before
+  View<T> to;
 
   BR_HD void operator()(Index i) const {
-    if (source[i] >= 0) to[i] = from[source[i]];
+    if (source[i] >= 0)
+      to[i] = from[source[i]];
+    else
+      __builtin_memset(static_cast<void*>(&to[i]), 0, sizeof(T));
   }
 };
 
@@ -65,7 +68,7 @@ struct GatherVectors {
 
 template <class T>
 void gather(const Exec& exec, const Buffer<Index>& source, Buffer<T>& items) {
-  Buffer<T> gathered(items.space(), source.size());
+  Buffer<T> gathered = unfilled<T>(items.space(), source.size());
   const GatherItems<T> kernel{source.view(), std::as_const(items).view(), gathered.view()};
   for_each(exec, source.size(), kernel);
   items.swap(gathered);

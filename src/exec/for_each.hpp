@@ -6,6 +6,7 @@
 // text. It writes only what it owns, so any number of threads gives the same bits.
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 #include "exec/buffer.hpp"
@@ -133,14 +134,12 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
   if (exec.space == Space::cuda) {
     if (count <= 0) return neutral;
     const Index blocks = std::min((count + block_size - 1) / block_size, Index{528});
-    Buffer<std::byte> partial(Space::cuda, static_cast<Index>(sizeof(Value)) * blocks);
-    launch(kernel, fold_blocks<Value, Kernel, Combine>, blocks, block_size, count, neutral, kernel,
-           combine, reinterpret_cast<Value*>(partial.data()));
-    std::vector<Partial> of_block(static_cast<std::size_t>(blocks), Partial{neutral});
-    copy_bytes(of_block.data(), Space::host, partial.data(), Space::cuda,
-               of_block.size() * sizeof(Value));
+    const Look look = next_look(static_cast<std::size_t>(blocks) * sizeof(Value));
+    launch(kernel, fold_and_tell<Value, Kernel, Combine>, blocks, block_size, count, neutral,
+           kernel, combine, look);
+    wait_for(look);
     Value value = neutral;
-    for (const Partial& part : of_block) value = combine(value, part.value);
+    std::memcpy(static_cast<void*>(&value), look.told, sizeof value);
     return value;
   }
 #endif

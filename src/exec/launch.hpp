@@ -17,6 +17,7 @@
 #if defined(__CUDACC__)
 #include "exec/cuda.hpp"
 #include "exec/launch_times.hpp"
+#include "exec/look.hpp"
 #endif
 
 namespace breccia {
@@ -193,26 +194,59 @@ __device__ Value item_value(const Value& neutral, const Kernel& kernel, Index i)
   }
 }
 
-/// One value a block: each thread folds every n-th item, then the block its threads.
+/// The value of a block of a fold, for its thread 0: each thread folds every n-th item, then the
+/// block its threads.
 template <class Value, class Kernel, class Combine>
-__global__ void __launch_bounds__(block_size)
-    fold_blocks(Index count, Value neutral, Kernel kernel, Combine combine, Value* partial) {
-  follow_previous();
-  __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
-  auto* shared = reinterpret_cast<Value*>(memory);
+__device__ void fold_in_block(std::int64_t first, std::int64_t stride, Index count,
+                              const Value& neutral, const Kernel& kernel, const Combine& combine,
+                              Value* shared) {
   // Each thread's value lies in `shared` from the start: of a copy of `neutral` in registers nvcc
   // 13.0 forgets in each turn what the turns before have added (bench/notes/tried.md).
   Value& value = shared[threadIdx.x];
   value = neutral;
-  for (std::int64_t i = blockIdx.x * std::int64_t{block_size} + threadIdx.x; i < count;
-       i += gridDim.x * std::int64_t{block_size})
+  for (std::int64_t i = first + threadIdx.x; i < count; i += stride)
     value = combine(value, item_value(neutral, kernel, static_cast<Index>(i)));
   for (unsigned half = block_size / 2; half > 0; half /= 2) {
     __syncthreads();
     if (threadIdx.x < half)
       shared[threadIdx.x] = combine(shared[threadIdx.x], shared[threadIdx.x + half]);
   }
+}
+
+/// One value a block.
+template <class Value, class Kernel, class Combine>
+__global__ void __launch_bounds__(block_size)
+    fold_blocks(Index count, Value neutral, Kernel kernel, Combine combine, Value* partial) {
+  follow_previous();
+  __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
+  auto* shared = reinterpret_cast<Value*>(memory);
+  fold_in_block(blockIdx.x * std::int64_t{block_size}, gridDim.x * std::int64_t{block_size}, count,
+                neutral, kernel, combine, shared);
   if (threadIdx.x == 0) partial[blockIdx.x] = shared[0];
+}
+
+/// Values that blocks have found.
+template <class Value>
+struct FoundBefore {
+  const Value* found;
+  __device__ Value operator()(Index i) const { return found[i]; }
+};
+
+/// The value of all blocks, which the last one tells.
+template <class Value, class Kernel, class Combine>
+__global__ void __launch_bounds__(block_size)
+    fold_and_tell(Index count, Value neutral, Kernel kernel, Combine combine, Look look) {
+  follow_previous();
+  __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
+  auto* shared = reinterpret_cast<Value*>(memory);
+  auto* partial = reinterpret_cast<Value*>(look.work);
+  fold_in_block(blockIdx.x * std::int64_t{block_size}, gridDim.x * std::int64_t{block_size}, count,
+                neutral, kernel, combine, shared);
+  if (threadIdx.x == 0) partial[blockIdx.x] = shared[0];
+  if (!is_last_block(look)) return;
+  fold_in_block(0, block_size, static_cast<Index>(gridDim.x), neutral, FoundBefore<Value>{partial},
+                combine, shared);
+  if (threadIdx.x == 0) tell(look, shared[0]);
 }
 #endif
 

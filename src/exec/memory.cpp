@@ -13,7 +13,10 @@
 #include "exec/filling.hpp"
 
 #if defined(BR_CUDA)
+#include <mutex>
+
 #include "exec/cuda.hpp"
+#include "exec/look.hpp"
 #endif
 
 namespace breccia {
@@ -125,6 +128,14 @@ void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,
                 [[maybe_unused]] Space from_space, std::size_t bytes) {
   if (bytes == 0) return;
 #if defined(BR_CUDA)
+  if (to_space != Space::cuda && from_space == Space::cuda && bytes <= most_told) {
+    const Look look = next_look(0);  // by way of memory that the device knows
+    check_device(cudaMemcpyAsync(look.told, from, bytes, cudaMemcpyDefault, device_stream()),
+                 "a copy");
+    wait_for_device();
+    std::memcpy(to, look.told, bytes);
+    return;
+  }
   if (to_space == Space::cuda || from_space == Space::cuda) {
     check_device(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, device_stream()), "a copy");
     if (to_space != from_space) wait_for_device();
@@ -165,8 +176,17 @@ cudaEvent_t mark() {
 void peek_bytes(void* to, const void* from, [[maybe_unused]] Space from_space, std::size_t bytes) {
 #if defined(BR_CUDA)
   if (from_space == Space::cuda) {
-    check_device(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, beside()), "a look at memory");
+    static std::mutex one_at_a_time;
+    static std::byte* const seen = [] {
+      void* memory = nullptr;
+      check_device(cudaHostAlloc(&memory, most_told, cudaHostAllocPortable), "locking memory");
+      return static_cast<std::byte*>(memory);
+    }();
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    void* const by = bytes <= most_told ? seen : to;
+    check_device(cudaMemcpyAsync(by, from, bytes, cudaMemcpyDefault, beside()), "a look at memory");
     check_device(cudaStreamSynchronize(beside()), "a look at memory");
+    if (by != to) std::memcpy(to, by, bytes);
     return;
   }
 #endif

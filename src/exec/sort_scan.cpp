@@ -164,16 +164,42 @@ std::int64_t exclusive_scan_on_host(const Exec& exec, Buffer<Index>& counts) {
   return last;
 }
 
-}  // namespace
-
-Index exclusive_scan(const Exec& exec, Buffer<Index>& counts) {
-  const std::int64_t total = counts.space() == Space::cuda ? exclusive_scan_on_device(counts)
-                                                           : exclusive_scan_on_host(exec, counts);
+void check_total(std::int64_t total) {
   if (total > std::numeric_limits<Index>::max())
     throw DeviceError(
         "the model needs more than the 2,147,483,647 pairs of elements that fit a 32-bit index; "
         "use fewer elements, or a smaller search.margin or links.range");
+}
+
+}  // namespace
+
+Index exclusive_scan(const Exec& exec, Buffer<Index>& counts) {
+  const std::int64_t total = counts.space() == Space::cuda
+                                 ? exclusive_scan_on_device(counts, nullptr, true).total
+                                 : exclusive_scan_on_host(exec, counts);
+  check_total(total);
   return static_cast<Index>(total);
+}
+
+Scanned exclusive_scan(const Exec& exec, Buffer<Index>& counts, const Buffer<Index>& flag) {
+  Scanned scanned{0, 0};
+  if (counts.space() == Space::cuda) {
+    scanned = exclusive_scan_on_device(counts, flag.data(), true);
+  } else {
+    scanned.flag = flag.data()[0];
+    scanned.total = exclusive_scan_on_host(exec, counts);
+  }
+  check_total(scanned.total);
+  return scanned;
+}
+
+void exclusive_scan(const Exec& exec, Buffer<Index>& counts, [[maybe_unused]] Index total) {
+  if (counts.space() == Space::cuda) {
+    exclusive_scan_on_device(counts, nullptr, false);
+    return;
+  }
+  [[maybe_unused]] const std::int64_t found = exclusive_scan_on_host(exec, counts);
+  BR_ASSERT(found == total);
 }
 
 }  // namespace breccia

@@ -26,4 +26,15 @@ void sort_keys(const Exec& exec, Buffer<std::uint64_t>& keys, Buffer<std::uint64
 /// @throws DeviceError if the total does not fit an Index
 Index exclusive_scan(const Exec& exec, Buffer<Index>& counts);
 
+/// A scan's answer: the sum of all counts, and a number that kernels before it have left.
+struct Scanned {
+  std::int64_t total;
+  Index flag;
+};
+/// As that, and the number `flag` by the same look at a device.
+/// @param flag  one item
+Scanned exclusive_scan(const Exec& exec, Buffer<Index>& counts, const Buffer<Index>& flag);
+/// As that where the total is known: nothing is asked of a device.
+void exclusive_scan(const Exec& exec, Buffer<Index>& counts, Index total);
+
 }  // namespace breccia

@@ -1,4 +1,4 @@
-// The only file that sees CUB, the sorts and scans of the CUDA toolkit.
+// The only file that sees CUB, the sorts of the CUDA toolkit.
 
 #include "exec/sort_scan_device.hpp"
 
@@ -6,8 +6,8 @@
 
 #if defined(__CUDACC__)
 #include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_scan.cuh>
 
+#include "exec/device_scan.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia {
@@ -41,8 +41,14 @@ struct JoinItem {
   BR_HD void operator()(Index i) const { items[i] = {key[i], static_cast<Index>(item[i])}; }
 };
 struct CountOf {
+  static constexpr const char* name = "exec.scan_counts";
   View<const Index> counts;
-  BR_HD std::int64_t operator()(Index i) const { return counts[i]; }
+  BR_HD Index operator()(Index i) const { return counts[i]; }
+};
+struct PutBegin {
+  static constexpr const char* name = "exec.scan_begins";
+  View<Index> counts;
+  BR_HD void operator()(Index i, Index begin, Index) const { counts[i] = begin; }
 };
 
 constexpr Exec on_device{Space::cuda, 1, nullptr};
@@ -50,8 +56,8 @@ constexpr Exec on_device{Space::cuda, 1, nullptr};
 /// Sorts two arrays by the numbers in the first, stable.
 template <class Key, class Carried>
 void sort_pairs(Buffer<Key>& key, Buffer<Carried>& carried) {
-  Buffer<Key> sorted_key(Space::cuda, key.size());
-  Buffer<Carried> sorted_carried(Space::cuda, key.size());
+  Buffer<Key> sorted_key = unfilled<Key>(Space::cuda, key.size());
+  Buffer<Carried> sorted_carried = unfilled<Carried>(Space::cuda, key.size());
   with_work_space([&](void* work, std::size_t& bytes) {
     return cub::DeviceRadixSort::SortPairs(work, bytes, key.data(), sorted_key.data(),
                                            carried.data(), sorted_carried.data(), key.size(), 0,
@@ -66,8 +72,8 @@ void sort_pairs(Buffer<Key>& key, Buffer<Carried>& carried) {
 void sort_by_key_on_device(Buffer<KeyedIndex>& items) {
   const Index count = items.size();
   if (count < 2) return;
-  Buffer<std::uint64_t> key(Space::cuda, count);
-  Buffer<std::uint32_t> item(Space::cuda, count);
+  Buffer<std::uint64_t> key = unfilled<std::uint64_t>(Space::cuda, count);
+  Buffer<std::uint32_t> item = unfilled<std::uint32_t>(Space::cuda, count);
   const View<const KeyedIndex> view = std::as_const(items).view();
   for_each(on_device, count, SplitItem{view, key.view(), item.view()});
   sort_pairs(key, item);  // stable: equal keys stay in the order of their items
@@ -76,7 +82,8 @@ void sort_by_key_on_device(Buffer<KeyedIndex>& items) {
 }
 
 void sort_keys_on_device(Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scratch, int bits) {
-  scratch.resize(keys.size());
+  scratch.clear();
+  scratch.resize_unfilled(keys.size());
   if (keys.size() < 2) return;
   with_work_space([&](void* work, std::size_t& bytes) {
     return cub::DeviceRadixSort::SortKeys(work, bytes, keys.data(), scratch.data(), keys.size(), 0,
@@ -85,21 +92,25 @@ void sort_keys_on_device(Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scr
   keys.swap(scratch);
 }
 
-std::int64_t exclusive_scan_on_device(Buffer<Index>& counts) {
-  constexpr Index surely_fits = 46'340;  // so many elements have less than 2^31 pairs
-  if (counts.empty()) return 0;
-  std::int64_t total = 0;
-  if (counts.size() > surely_fits)
-    total = fold(on_device, counts.size(), std::int64_t{0}, CountOf{std::as_const(counts).view()},
-                 Sum{});
+void sort_pairs_on_device(Buffer<std::uint64_t>& keys, Buffer<Index>& carried,
+                          Buffer<std::uint64_t>& key_scratch, Buffer<Index>& scratch, int bits) {
+  key_scratch.clear();
+  scratch.clear();
+  key_scratch.resize_unfilled(keys.size());
+  scratch.resize_unfilled(keys.size());
+  if (keys.size() < 2) return;
   with_work_space([&](void* work, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(work, bytes, counts.data(), counts.data(), counts.size(),
-                                         device_stream());
+    return cub::DeviceRadixSort::SortPairs(work, bytes, keys.data(), key_scratch.data(),
+                                           carried.data(), scratch.data(), keys.size(), 0, bits,
+                                           device_stream());
   });
-  if (counts.size() > surely_fits) return total;
-  Index last = 0;
-  copy_bytes(&last, Space::host, counts.data() + counts.size() - 1, Space::cuda, sizeof last);
-  return last;
+  keys.swap(key_scratch);
+  carried.swap(scratch);
+}
+
+Scanned exclusive_scan_on_device(Buffer<Index>& counts, const Index* flag, bool asks) {
+  const CountOf of{std::as_const(counts).view()};
+  return scan_on_device(counts.size(), of, of, PutBegin{counts.view()}, flag, asks);
 }
 
 }  // namespace breccia
@@ -119,7 +130,11 @@ void sort_by_key_on_device(Buffer<KeyedIndex>&) {
 void sort_keys_on_device(Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, int) {
   refuse_to_sort();
 }
-std::int64_t exclusive_scan_on_device(Buffer<Index>&) {
+void sort_pairs_on_device(Buffer<std::uint64_t>&, Buffer<Index>&, Buffer<std::uint64_t>&,
+                          Buffer<Index>&, int) {
+  refuse_to_sort();
+}
+Scanned exclusive_scan_on_device(Buffer<Index>&, const Index*, bool) {
   refuse_to_sort();
 }
 

@@ -226,6 +226,21 @@ TEST(BroadPhase, ReadsItsArraysInKernelsOnly) {
   EXPECT_EQ(search(scene, {.space = Space::shadow}), search(scene));
 }
 
+TEST(BroadPhase, ListsTheSamePairsByRowsOfADeviceAndWhereARowIsTooLong) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    RandomStream random(seed);
+    Scene scene = cloud(random, 500, 3.0, 0.05, 0.4);
+    shuffle_ids(scene, random);
+    ASSERT_EQ(search(scene, {.space = Space::shadow}), search(scene)) << "seed " << seed;
+  }
+  for (const Index together : {32, 33, 34, 150}) {  // one has so many partners, less itself
+    RandomStream random(1);
+    Scene scene = cloud(random, together, 0.01, 0.5, 0.5);
+    shuffle_ids(scene, random);
+    EXPECT_EQ(search(scene, {.space = Space::shadow}), search(scene)) << together;
+  }
+}
+
 TEST(BroadPhase, FindsPointsAtTheSamePlaceAndNothingInAnEmptyScene) {
   Scene scene;
   EXPECT_TRUE(search(scene).empty());
