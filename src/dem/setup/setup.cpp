@@ -269,13 +269,13 @@ void tell_other_damping(const Config& config, std::vector<std::string>& warnings
     if (m.link_damping == 0.0)
       warnings.push_back(fmt::format(
           "material.{}: {} was found with link_damping = 0.3, and this case has 0: links that "
-          "break ring on and part their neighbours, so that C30 has 13 % less compressive "
+          "break ring on and part their neighbours, so that C30 has 8 % less compressive "
           "strength (docs/theory.md, 4)",
           m.name, m.use));
     else if (config.local_damping > 0.0 && !of_stages)
       warnings.push_back(fmt::format(
           "material.{}: {} was found without local damping, and this case has {}: it drags on "
-          "pieces that fly, so that C30 with 0.3 has 15 % more compressive and 3 % more tensile "
+          "pieces that fly, so that C30 with 0.3 has 11 % more compressive and 3 % more tensile "
           "strength (docs/theory.md, 4)",
           m.name, m.use, config.local_damping));
   }

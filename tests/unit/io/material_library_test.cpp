@@ -136,7 +136,7 @@ TEST(NamedMaterials, TellWhichOwnKeysStandInTheirPlaceAndWhere) {
           "material.m uses C30 but for its own keys: density = 2450.0 (line 7; C30: 2400.0)"}));
   EXPECT_EQ(notes("use = \"C30\"\n", {"material.m.cohesion=9 MPa"}),
             (std::vector<std::string>{"material.m uses C30 but for its own keys: cohesion = \"9 "
-                                      "MPa\" (--set; C30: \"43.61 MPa\")"}));
+                                      "MPa\" (--set; C30: \"20.1 MPa\")"}));
   EXPECT_EQ(notes("use = \"C30\"\njoint = { tension = \"2 MPa\" }\n", {}, "fdem2d"),
             (std::vector<std::string>{"material.m uses C30 but for its own keys: joint.tension = "
                                       "\"2 MPa\" (line 7; C30: \"2.905 MPa\")"}));
