@@ -84,7 +84,7 @@ method = "dem3d"
 title = "Cylinder between walls"
 
 [time]
-end = "9 ms"
+end = "12 ms"
 
 [output]
 frames = 10
