@@ -274,7 +274,7 @@ def bounds(lines):
         cubes, prisms = of.get(("platens_cube", "strength"), {}), of.get(("platens_prism", "strength"), {})
         over = {packing: cubes[packing] / prisms[packing] for packing in cubes if packing in prisms}
         rough = cell(of["rough_over", ""], 2, None) + "; " + cell(of.get(("platens_prism", "residual"), {}), 2, None) if prisms else ""
-        pressed = ", ".join(text for pressure in (5, 20, 50, 100) if (text := newman_misfit(of, pressure)))
+        pressed = ", ".join(newman_misfit(of, pressure) or "-" for pressure in (5, 20, 50, 100))
         out.append("| " + " | ".join((name, cell(of["prism", "strength"], 1, None), strain_misfit(name.split(",")[0], statistics.mean(of["prism", "peak_strain"].values())), cell(of["prism", "residual"], 3, (0.1, 0.2)), cell(of["slope_5", ""], 1, (4.0, 5.0)),
                                       pressed, cell(of.get(("oedometer", "strain_1000"), {}), 1, None), rough.removesuffix("; "), cell(over, 2, None))) + " |")
     return "\n".join(out)

@@ -41,8 +41,9 @@ CONCRETES = {
     "friction_cap": {"friction_cap": '"3 MPa"', "broken_friction": "0.6", "broken_rolling_limit": "1.0"},
     "C30": {"use": '"C30"'},
     "C30_local": {"use": '"C30"\n' + "\n".join(f"{key} = {value}" for key, value in keyed_specimens.LOCAL_C30.items())},
-    "C30_corner": {"use": '"C30"\nyoung = "33.6 GPa"\npoisson = 0.144\ntensile_strength = "0.725 MPa"\ncohesion = "9.078 MPa"\n'
-                          'criterion = "corner"\nfriction_angle = "10 deg"\nknee_strength = 0.0\nslip_wear = 0.3\nlink_damping = 0.0\nfabric = "even"'},
+    "C30_corner": {"use": '"C30"\n' + "\n".join(f"{key} = {value}" for key, value in (keyed_specimens.LOCAL_C30 | {
+        "young": '"33.6 GPa"', "poisson": "0.144", "tensile_strength": '"0.725 MPa"', "cohesion": '"9.078 MPa"', "criterion": '"corner"', "friction_angle": '"10 deg"', "knee_strength": "0.0", "slip_wear": "0.3",
+        "fabric": '"even"'}).items())},
     "packed": {"fabric": '"packed"', "stiffness": '"estimated"'},
     "ldpm": {},
     "ldpm_fine": {"mix": '{ cement = 315.0, water_ratio = 0.5, air = 0.03, smallest = "10 mm", largest = "20 mm", fuller = 0.5 }'},

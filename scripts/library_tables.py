@@ -101,7 +101,7 @@ def left(found, material, elements):
 
 def beyond(lines, elements):
     """Tests that no target asks for, concrete by concrete, beside what is published."""
-    found, whole = numbers([one for one in lines if one["specimen"] in PAIRED]), numbers(lines)
+    found, whole, made = numbers([one for one in lines if one["specimen"] in PAIRED]), numbers(lines), lines
     slopes = paired_slopes([one for one in lines if one["specimen"] in PAIRED])
     materials = sorted({key[0] for key in found}, key=lambda name: int(name[1:]))
     materials = [name for name in materials if (name, elements, "triaxial_50", "strength") in found]
@@ -110,11 +110,16 @@ def beyond(lines, elements):
         return found.get((material, elements, test, "strength"), (None,))[0]
 
     def cell(material, test, quantity, digits, over=None, wanted=(-math.inf, math.inf), count=elements):
-        number, below = found.get((material, count, test, quantity)), mean(material, over) if over else 1.0
-        if not number or not below:
+        number = found.get((material, count, test, quantity))
+        if over:  # packing by packing
+            up, below = ({one["specimen"]: float(one["value"]) for one in made if (one["material"], int(one["elements"]), one["test"], one["quantity"]) == (material, size, name, quantity)}
+                         for size, name in ((count, test), (elements, over)))
+            ratios = [up[packing] / below[packing] for packing in up if packing in below and packing in PAIRED]
+            number = (statistics.mean(ratios), statistics.stdev(ratios) if len(ratios) > 1 else 0.0, len(ratios)) if ratios else None
+        if not number:
             return ""
-        text = spread(number, digits, below)
-        if not wanted[0] <= round(number[0] / below, digits) <= wanted[1]:
+        text = spread(number, digits)
+        if not wanted[0] <= round(number[0], digits) <= wanted[1]:
             text = re.sub(r"^(\S+)", r"**\1**", text)
         return text + ("" if number[2] == 3 else f" (n = {number[2]})")
 
@@ -244,7 +249,7 @@ def long_prisms(lines):
         return lambda key: f"{100 * found[*key, 'prism_long', quantity][0] / sum(found[*key, 'prism_long', name][0] for name in of_all):.0f}"
 
     rows = [*((f"left at {times} times the strain of the peak, of f_c", cell(quantity)) for times, quantity in ((2, "left_2"), (2.5, "left_2.5"), ("3", "residual"))),
-            ("of what links have spent at the end: friction; plastic (moments, crushing); cracks, %", lambda key: "; ".join(share(name, spent)(key) for name in spent)),
+            ("of what links have spent at the end: friction; plastic (moments, compaction, crushing); cracks, %", lambda key: "; ".join(share(name, spent)(key) for name in spent)),
             ("damping of links, of all work, %", share("damping", ("work",)))]
     return table("n = 3; elements", columns, rows)
 
