@@ -69,7 +69,8 @@ def smooth(values, width):
 
 def spread(values, digits, unit=1.0):
     values = [unit * v for v in values]
-    return f"{statistics.mean(values):,.{digits}f}" + (f" +- {statistics.stdev(values):,.{digits}f}" if len(values) > 1 else "")
+    mean = round(statistics.mean(values), digits) + 0.0  # no -0
+    return f"{mean:,.{digits}f}" + (f" +- {statistics.stdev(values):,.{digits}f}" if len(values) > 1 else "")
 
 
 def grouped(records):
