@@ -69,7 +69,6 @@ struct Shape : ShapeOfSetUp, ShapeOfRanks {
   static auto& loaded_sides(World& w) { return w.loaded_edges; }
   static View<const Index> laws(const World& w) { return laws_of(w); }
   static constexpr bool drops_separated = false;  ///< fdem_shared/separated.hpp
-  static constexpr bool lists_joints = true;      ///< fdem_shared/busy_items.hpp
   BR_HD static double near(const Mat2& reference) { return near_reach(reference); }
 
   /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.

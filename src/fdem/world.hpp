@@ -96,8 +96,8 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, couple_phase, node_vertex, side_across,
          border_vertex, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
-         reach_place, clock, device_flags, held_couples.item, busy.item, busy.count,
-         busy_joints.item, busy_joints.count, ringed, rows);
+         reach_place, clock, device_flags, held_couples.item, busy.item, busy.listed, busy.count,
+         busy_joints.item, busy_joints.listed, busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -174,8 +174,8 @@ struct World {
   /// Of a move launched at once: 1 if margin_used, in one process if a search is due; on ranks bit
   /// k if flag k of ExposedVertices::changed is set. (2; move)
   Buffer<std::int32_t> device_flags;
-  fdem_shared::BusyItems busy,
-      busy_joints;  ///< couples, joints of this step (search, derive; pairs, sums)
+  fdem_shared::KeptList busy,
+      busy_joints;  ///< couples, joints (search, derive; pairs, sums)
   StepGraph graph;  ///< of a few steps (advance)
 };
 

@@ -28,6 +28,14 @@ struct BusyItems {
   }
 };
 
+/// What is listed of some items from step to step (kept_lists.hpp).
+struct KeptList {
+  Buffer<Index> item;           ///< those listed; room for all  [-]
+  Buffer<std::uint8_t> listed;  ///< 1: it is  [-]  (items)
+  Buffer<Index> count;          ///< listed before the present step, and with those of it  [-]  (2)
+  Index begun = 0;              ///< at the last search
+};
+
 /// Where an item goes at the end of a list of `count`: one addition for all threads of a warp.
 BR_HD inline Index place_at_end(Index& count) {
 #if defined(__CUDA_ARCH__)

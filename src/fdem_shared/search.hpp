@@ -371,10 +371,6 @@ void derive_mesh_couples(World& w) {
   build_incidence(w.exec, pairs.a, pairs.b, Shape::elements(w).id, w.couple_incidence);
   w.held_couples.known = false;
   w.parent_joint.resize(pairs.size());
-  if (w.exec.space != Space::host) {
-    w.busy.resize(pairs.size());
-    if constexpr (Shape::lists_joints) w.busy_joints.resize(w.joints.size());
-  }
   for_each(w.exec, pairs.size(), parent_joints(w));
   w.couple_phase.resize(pairs.size());
   const auto state = std::as_const(w.couples.history.state).view();

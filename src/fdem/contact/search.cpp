@@ -3,9 +3,14 @@
 #include "fdem_shared/search.hpp"
 
 #include "fdem/ranks.hpp"
+#include "fdem/stepping/busy_pairs.hpp"
 #include "fdem/stepping/launches.hpp"
+#include "fdem_shared/kept_lists.hpp"
 
 namespace breccia::fdem {
+
+using fdem_shared::begin_empty;
+using fdem_shared::begin_list;
 
 MarginRule margin_rule(const World& w) {
   return fdem_shared::mesh_margin_rule(w);
@@ -35,6 +40,15 @@ void find_couples(World& w) {
 
 void derive_couples(World& w) {
   fdem_shared::derive_mesh_couples(w);
+  if (w.exec.space == Space::host) return;
+  const Index couples = w.couples.size(), joints = w.joints.size();
+  if (keeps_lists(w)) {
+    begin_list(w.exec, w.busy, couples, ActingCouple(w));
+    begin_list(w.exec, w.busy_joints, joints, SoftenedJoint(w));
+  } else {
+    begin_empty(w.busy, couples);
+    begin_empty(w.busy_joints, joints);
+  }
 }
 
 }  // namespace breccia::fdem

@@ -9,20 +9,25 @@
 #include "exec/for_each.hpp"
 #include "fdem/joints/insertion_kernels.hpp"
 #include "fdem/shape.hpp"
+#include "fdem/stepping/busy_pairs.hpp"
 #include "fdem/stepping/launches.hpp"
 #include "fdem/stepping/step.hpp"
 #include "fdem/stepping/wide_couples.hpp"
 #include "fdem/stepping/wide_joints.hpp"
 #include "fdem/stepping/wide_kernels.hpp"
+#include "fdem_shared/kept_lists.hpp"
 
 namespace breccia::fdem {
 namespace {
 
 using fdem_shared::Bounded;
 using fdem_shared::BusyWide;
-using fdem_shared::emptying;
+using fdem_shared::CountLists;
+using fdem_shared::groups_for;
 using fdem_shared::groups_of;
+using fdem_shared::KeptList;
 using fdem_shared::ListBusy;
+using fdem_shared::NotListed;
 
 /// From so many joints on they have a launch of their own: they take longer then than a launch
 /// more, and can have the registers that suit them.
@@ -33,29 +38,43 @@ Bounded<Kernel, blocks> bounded(const Kernel& kernel) {
   return {kernel};
 }
 
-/// Whether couples with work to do are listed first, and damaged joints: a launch more. It pays
-/// from so many couples on, or from fewer where joints may be damaged, which take long. Tests in
-/// Space::shadow see both ways.
-bool lists_busy(const World& w) {
-  const Index couples = w.couples.size();
-  return couples >= (w.joints.size() > 0 || w.exec.space == Space::shadow ? 500 : 8'000);
-}
 /// Groups of threads that share a list out: as many as run at a time, and more.
 constexpr Index most_groups = 132 * 128;
 
-/// Joints and couples by one thread or group of threads each.
+/// In registers of which so many blocks fit a multiprocessor at once.
+constexpr int blocks_of_pairs = 4;
+
+/// What is listed, by groups of threads.
+template <class Wide>
+BusyWide<Wide> listed(const Wide& wide, const KeptList& list, Index groups) {
+  return {wide, list.item.view(), list.count.view(), groups};
+}
+/// Listed couples and damaged joints by several threads each, all others by one.
 template <class Number, class By>
-void launch_all_pairs(World& w, const By& by) {
+void launch_kept_pairs(World& w, const By& by) {
+  using WideJoints = JointsWide<Number>;
+  using WideCouples = CouplesWide<Number, true>;
   const Index joints = w.joints.size(), couples = w.couples.size();
   const JointForces<Number> joint = joint_kernel<Number>(w);
-  using Couples = CouplesWide<Number, true>;
-  const Couples wide{couple_kernel<Number>(w)};
-  const Index threads = couples * Couples::width;
-  if (joints < fewest_joints_apart)
-    return for_each_part(w.exec,
-                         part(threads, by(wide), part(joints, by(bounded<4>(joint)), Parts<>{})));
-  for_each_part(w.exec, part(joints, by(bounded<8>(joint)), Parts<>{}));
-  for_each_part(w.exec, part(threads, by(wide), Parts<>{}));
+  const CoupleForces<Number> couple = couple_kernel<Number>(w);
+  const Index couple_groups = groups_for<WideCouples>(w.busy, couples, most_groups),
+              joint_groups = groups_for<WideJoints>(w.busy_joints, joints, most_groups);
+  const auto launch = [&](const auto& other_joints) {  // first what takes longest
+    const auto wide_joints =
+        bounded<blocks_of_pairs>(listed(WideJoints{joint}, w.busy_joints, joint_groups));
+    for_each_part(
+        w.exec,
+        part(joint_groups * WideJoints::width, by(wide_joints),
+             part(couple_groups * WideCouples::width,
+                  by(listed(WideCouples{couple}, w.busy, couple_groups)),
+                  part(couples, by(NotListed(couple, ActingCouple(w), w.busy)), other_joints))));
+  };
+  const auto others = [&](const auto& kernel) {
+    return part(joints, by(NotListed(kernel, SoftenedJoint(w), w.busy_joints)), Parts<>{});
+  };
+  if (joints < fewest_joints_apart) return launch(others(bounded<blocks_of_pairs>(joint)));
+  for_each_part(w.exec, others(bounded<8>(joint)));
+  launch(Parts<>{});
 }
 
 /// Damaged joints and busy couples.
@@ -66,19 +85,16 @@ void launch_busy(World& w, const By& by) {
   const Index joints = w.joints.size(), couples = w.couples.size();
   const Index groups = groups_of<Couples>(couples, most_groups),
               joint_groups = groups_of<Joints>(joints, most_groups);
-  const auto wide_joints = by(BusyWide<Joints>{{joint_kernel<Number>(w)},
-                                               w.busy_joints.item.view(),
-                                               w.busy_joints.count.view(),
-                                               joint_groups});
-  const auto wide_couples = by(BusyWide<Couples>{
-      {couple_kernel<Number>(w)}, w.busy.item.view(), w.busy.count.view(), groups});
+  const auto wide_joints = bounded<blocks_of_pairs>(
+      listed(Joints{joint_kernel<Number>(w)}, w.busy_joints, joint_groups));
+  const auto wide_couples = listed(Couples{couple_kernel<Number>(w)}, w.busy, groups);
   // Joints first: one takes longest. Both in registers of which four blocks fit.
-  for_each_part(w.exec, part(joint_groups * Joints::width, bounded<4>(wide_joints),
-                             part(groups * Couples::width, wide_couples, Parts<>{})));
+  for_each_part(w.exec, part(joint_groups * Joints::width, by(wide_joints),
+                             part(groups * Couples::width, by(wide_couples), Parts<>{})));
 }
 
 /// First what takes little, and lists of couples that may meet and of damaged joints; then these.
-template <class Number, class By>
+template <class Number, bool any_couple, class By>
 void launch_busy_pairs(World& w, const By& by) {
   using Couple = BeginningCouples<Number>;
   const Index joints = w.joints.size(), couples = w.couples.size();
@@ -90,16 +106,14 @@ void launch_busy_pairs(World& w, const By& by) {
                                                               w.busy_joints.count.view()});
   };
   if (joints < fewest_joints_apart) {
-    for_each_part(w.exec, part(couples, list_couples,
-                               part(joints, list_joints(bounded<4>(joint)), Parts<>{})));
+    for_each_part(w.exec,
+                  part(couples, list_couples,
+                       part(joints, list_joints(bounded<blocks_of_pairs>(joint)), Parts<>{})));
   } else {
     for_each_part(w.exec, part(joints, list_joints(bounded<8>(joint)), Parts<>{}));
     for_each_part(w.exec, part(couples, list_couples, Parts<>{}));
   }
-  if (couple.conservative || couple.rebound.loses())
-    launch_busy<Number, true>(w, by);
-  else
-    launch_busy<Number, false>(w, by);
+  launch_busy<Number, any_couple>(w, by);
 }
 
 /// Joints and couples.
@@ -108,10 +122,11 @@ void launch_pairs(World& w, const By& by) {
   const Index joints = w.joints.size(), couples = w.couples.size();
   if (joints + couples == 0)  // triangles read corners ahead, which the move writes
     return for_each(w.exec, 1, by(Fence{}));
-  if (lists_busy(w))
-    launch_busy_pairs<Number>(w, by);
+  if (keeps_lists(w)) return launch_kept_pairs<Number>(w, by);
+  if (w.given->conservative || w.given->rebound.loses())
+    launch_busy_pairs<Number, true>(w, by);
   else
-    launch_all_pairs<Number>(w, by);
+    launch_busy_pairs<Number, false>(w, by);
 }
 
 struct Launches {
@@ -124,8 +139,11 @@ struct Launches {
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
-    with_number(w.exec.precision,
-                [&](auto number) { visit(emptying(w, triangle_kernel<decltype(number)>(w))); });
+    with_number(w.exec.precision, [&](auto number) {
+      using Sums = TriangleForces<decltype(number)>;
+      visit(CountLists<Sums>{triangle_kernel<decltype(number)>(w), w.busy.count.data(),
+                             w.busy_joints.count.data()});
+    });
   }
   static BundlesWide bundles(World& w) { return {bundle_kernel(w)}; }
 };

@@ -67,6 +67,7 @@ void find_couples(World& w) {
 
 void derive_couples(World& w) {
   fdem_shared::derive_mesh_couples(w);
+  if (w.exec.space != Space::host) w.busy.resize(w.couples.size());
 }
 
 }  // namespace breccia::fdem3

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fdem/stepping/busy_pairs.hpp"
 #include "physics/fdem/scene.hpp"
 #include "run/method/fdem_method.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -179,6 +180,35 @@ TEST(FdemSameBits, in_the_shadow_space_that_refuses_host_reads) {
   fdem::World w = fdem::make_world(scene.config, scene.model, exec);
   EXPECT_EQ(w.couples.history.state.space(), Space::shadow);
   EXPECT_EQ(w.joints.force.in_double.space(), Space::shadow);
+  EXPECT_EQ(hash_after(std::move(w)), reference());
+}
+
+/// How many a list of busy items holds for the next step.
+Index held_by(const fdem_shared::KeptList& list) {
+  std::vector<Index> count;
+  copy_to(count, list.count);
+  return count.at(0);
+}
+TEST(FdemSameBits, of_lists_kept_from_step_to_step_and_made_in_each) {
+  Exec shadow;
+  shadow.space = Space::shadow;
+  const Scene scene = impact();
+  fdem::World w = fdem::make_world(scene.config, scene.model, shadow);
+  Index couples = 0, joints = 0;
+  bool made_in_each = false;
+  while (w.step < 250) {
+    fdem::advance(w, {1e300, w.step + 1});
+    if (fdem::keeps_lists(w)) {
+      couples = std::max(couples, held_by(w.busy));
+      joints = std::max(joints, held_by(w.busy_joints));
+    } else {
+      made_in_each = true;
+      EXPECT_EQ(held_by(w.busy) + held_by(w.busy_joints), 0);
+    }
+  }
+  EXPECT_GT(couples, 5);
+  EXPECT_GT(joints, 5);
+  EXPECT_TRUE(made_in_each);
   EXPECT_EQ(hash_after(std::move(w)), reference());
 }
 
