@@ -260,7 +260,7 @@ def summary(records):
     rows.append(("ogive, 0.5 kg, 25.4 mm, slab of 0.178 m (Hanchak)", "leaves from 301 m/s on",
                  "; ".join(f"from {v} m/s with {spread(of_v[v], 0)} m/s (measured {HANCHAK[v]}; {text})" for of_v, v, text in ((coarse, 301, "60,000 elements"), (fine, 749, "480,000, friction 0.1"))),
                  f"at the limit {100 * statistics.mean(coarse[301])**2 / 301**2:.0f} % of the energy is left (60,000 elements, 0.577); from 434 m/s on **{max(fast(fine)):.0f} to {min(fast(fine)):.0f} m/s** with 480,000 elements and the friction of fast steel, "
-                 f"{max(fast(coarse)):.0f} to {min(fast(coarse)):.0f} m/s with 60,000 and 0.577", "size of elements and friction of the nose make up two thirds of it together, their shares depend on which comes first; the rest is not known"))
+                 f"{max(fast(coarse)):.0f} to {min(fast(coarse)):.0f} m/s with 60,000 and 0.577", "size of elements and friction of the nose (none: -12 % at 749 m/s); believed: inertia of elements, strength under some GPa"))
     pressed_at = {setting["rate"]: statistics.mean(found["strength"]) for setting, found in of("hopkinson")}
     over = {rate: strength / pressed_at[5] for rate, strength in pressed_at.items()}
     low = [over[rate] / model_code_90(rate) - 1 for rate in over if rate > 5]
