@@ -76,8 +76,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, couple_phase, node_vertex, side_across,
          border_vertex, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
-         reach_place, clock, device_flags, held_couples.item, busy.item, busy.count,
-         busy_joints.item, busy_joints.count, ringed, rows);
+         reach_place, clock, device_flags, held_couples.item, busy.item, busy.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -149,9 +148,8 @@ struct World {
   Buffer<Vec3> prescribed_velocity;                   ///< [m/s]  (motions; advance, servo)
   Buffer<StepClock> clock;                            ///< time there (2; move)
   Buffer<std::int32_t> device_flags;                  ///< of a move launched at once (2; move)
-  fdem_shared::BusyItems busy,
-      busy_joints;  ///< couples, joints of this step (search, derive; pairs, sums)
-  StepGraph graph;  ///< of a few steps (advance)
+  fdem_shared::BusyItems busy;  ///< couples of this step (search, derive; pairs, sums)
+  StepGraph graph;              ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.

@@ -5,7 +5,7 @@
 //
 // A launch of ListBusy looks at all items: it finishes those with little to do, couples at rest
 // apart and joints that stay whole, and lists the others. A launch of BusyWide or BusyWhereDue
-// evaluates the list; the sums of forces empty it (EmptiesLists). The order of the list
+// evaluates the list; the sums of forces empty it (EmptiesList). The order of the list
 // changes from run to run, but each item writes only its own forces.
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct BusyItems {
   }
 };
 
-/// What is listed of some items from step to step (kept_lists.hpp).
+/// A list of busy items that is kept from step to step (kept_lists.hpp).
 struct KeptList {
   Buffer<Index> item;           ///< those listed; room for all  [-]
   Buffer<std::uint8_t> listed;  ///< 1: it is  [-]  (items)
@@ -158,22 +158,21 @@ struct BusyWhereDue {
   }
 };
 
-/// The sums of forces that follow: they empty the lists.
+/// The sums of forces that follow: they empty the list.
 template <class Sums>
-struct EmptiesLists : Sums {
-  Index *couples, *joints;  ///< how many are listed; null: no list
+struct EmptiesList : Sums {
+  Index* count;  ///< how many are listed; null: no list
 
   template <class Read>
   BR_HD void update(Index i, const Read& loaded) const {
-    if (i == 0 && couples != nullptr) *couples = 0;
-    if (i == 0 && joints != nullptr) *joints = 0;
+    if (i == 0 && count != nullptr) *count = 0;
     Sums::update(i, loaded);
   }
 };
 
 template <class World, class Sums>
-EmptiesLists<Sums> emptying(World& w, const Sums& sums) {
-  return {sums, w.busy.count.data(), w.busy_joints.count.data()};
+EmptiesList<Sums> emptying(World& w, const Sums& sums) {
+  return {sums, w.busy.count.data()};
 }
 
 }  // namespace breccia::fdem_shared

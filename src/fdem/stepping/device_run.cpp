@@ -44,7 +44,7 @@ constexpr Index most_groups = 132 * 128;
 /// In registers of which so many blocks fit a multiprocessor at once.
 constexpr int blocks_of_pairs = 4;
 
-/// What is listed, by groups of threads.
+/// Listed items by groups of threads.
 template <class Wide>
 BusyWide<Wide> listed(const Wide& wide, const KeptList& list, Index groups) {
   return {wide, list.item.view(), list.count.view(), groups};
