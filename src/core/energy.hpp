@@ -2,73 +2,25 @@
 // The ledger: where every joule is. Sums are exact, so their order cannot matter.
 
 #include <cmath>
-#include <cstdint>
 
-#include "exec/types.hpp"
+#include "core/exact_sum.hpp"
 
 namespace breccia {
 
-/// A sum of doubles in fixed point, 128 bit with a quantum of 2^-64: each term is rounded once, by
-/// itself, so the sum is the same for any order, thread count, rank count and device.
-/// Holds |sum| < 2^63 of the unit, to 5e-20. A term that is beyond that, or no number, makes the
-/// sum infinite for good, in whatever order it comes.
-class ExactSum {
-  __extension__ using Quanta = unsigned __int128;
-  static constexpr Quanta overflown = static_cast<Quanta>(1) << 127;
-  static constexpr double limit = 9223372036854775808.0;  // 2^63
-
- public:
-  ExactSum() = default;
-  BR_HD explicit ExactSum(double value) { add(value); }
-
-  BR_HD void add(double value) {
-    if (value == 0.0) return;  // most of what most items have spent
-    const double scaled_high = value < 0.0 ? -value : value;
-    if (!(scaled_high < limit) || quanta_ == overflown) {
-      quanta_ = overflown;
-      return;
-    }
-    const double whole = static_cast<double>(static_cast<std::int64_t>(scaled_high));
-    const double fraction = (scaled_high - whole) * 18446744073709551616.0;  // 2^64
-    Quanta quanta = static_cast<Quanta>(static_cast<std::uint64_t>(whole)) << 64;
-    quanta += static_cast<std::uint64_t>(fraction);
-    if (value < 0.0)
-      quanta_ -= quanta;
-    else
-      quanta_ += quanta;
-  }
-  BR_HD void add(const ExactSum& other) {
-    const bool lost = quanta_ == overflown || other.quanta_ == overflown;
-    quanta_ = lost ? overflown : quanta_ + other.quanta_;
-  }
-
-  BR_HD double value() const {
-    if (quanta_ == overflown) return INFINITY;
-    const bool negative = (quanta_ >> 127) != 0;
-    const Quanta size = negative ? -quanta_ : quanta_;
-    const double high = static_cast<double>(static_cast<std::uint64_t>(size >> 64));
-    const double low = static_cast<double>(static_cast<std::uint64_t>(size));
-    const double result = high + low / 18446744073709551616.0;
-    return negative ? -result : result;
-  }
-
- private:
-  Quanta quanta_ = 0;
-};
-
-BR_HD inline ExactSum operator+(ExactSum a, const ExactSum& b) {
-  a.add(b);
-  return a;
-}
-
 /// Energies of items, of a part or of all of a model, by the columns of the ledger  [J; in 2D J/m].
-struct Energies {
-  ExactSum kinetic, elastic;
-  ExactSum fracture;  ///< where modes are told apart: by opening
-  ExactSum sliding;   ///< fracture by sliding
-  ExactSum plastic, friction, damping, contact, work;
-  ExactSum potential;  ///< sum of m g.x: gravity has done work where it falls
+/// @tparam Sum  ExactSum, or PackSum of items side by side
+template <class Sum>
+struct EnergiesBy {
+  Sum kinetic, elastic;
+  Sum fracture;  ///< where modes are told apart: by opening
+  Sum sliding;   ///< fracture by sliding
+  Sum plastic, friction, damping, contact, work;
+  Sum potential;  ///< sum of m g.x: gravity has done work where it falls
 };
+using Energies = EnergiesBy<ExactSum>;
+/// Energies of one item (R = double) or of a pack.
+template <class R>
+using EnergiesOf = EnergiesBy<SumOf<R>>;
 BR_HD inline Energies operator+(Energies a, const Energies& b) {
   a.kinetic.add(b.kinetic);
   a.elastic.add(b.elastic);
@@ -81,6 +33,21 @@ BR_HD inline Energies operator+(Energies a, const Energies& b) {
   a.work.add(b.work);
   a.potential.add(b.potential);
   return a;
+}
+
+/// Adds what items side by side have.
+template <class R>
+inline void add_packs(Energies& to, const EnergiesOf<R>& packs) {
+  to.kinetic.add(packs.kinetic.sum());
+  to.elastic.add(packs.elastic.sum());
+  to.fracture.add(packs.fracture.sum());
+  to.sliding.add(packs.sliding.sum());
+  to.plastic.add(packs.plastic.sum());
+  to.friction.add(packs.friction.sum());
+  to.damping.add(packs.damping.sum());
+  to.contact.add(packs.contact.sum());
+  to.work.add(packs.work.sum());
+  to.potential.add(packs.potential.sum());
 }
 
 /// Energies booked for good, and the start of the ledger  [J; in 2D J/m].

@@ -113,6 +113,18 @@ struct LinkRows {
   Seen view() const { return {starts.view(), links.view()}; }
 };
 
+/// State of element e, or of a pack.
+template <class R>
+BR_HD inline ElementStateOf<R> element_state(const View<const ElementState>& state, Index e) {
+  if constexpr (width_of<R> == 1) {
+    return read_record(state, e);
+  } else {
+    R s[10];
+    gather_records(state, consecutive<R>(e), s);
+    return {{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}, s[9]};
+  }
+}
+
 /// How the forces of this time change velocities (leapfrog with a variable step, Durand 2012, 3.3).
 struct Kick {
   double time;              ///< of the forces  [s]
@@ -348,10 +360,9 @@ struct MoveElements {
       loaded.state = read_record_now(&kick.state[e]);
       loaded.turn = read_record_now(&orientation[e]);
     } else {
-      R s[10], q[4];
-      gather_records(kick.state, consecutive<R>(e), s);
+      R q[4];
       gather_records(View<const Quaternion>(orientation), consecutive<R>(e), q);
-      loaded.state = {{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}, s[9]};
+      loaded.state = element_state<R>(kick.state, e);
       loaded.turn = {q[0], q[1], q[2], q[3]};
     }
     loaded.given.mass = load_now<R>(kick.mass, e);

@@ -5,30 +5,12 @@
 #include <cmath>
 
 #include "dem/free_walls.hpp"
+#include "dem/stepping/kernel_lanes.hpp"
 #include "domain/owned.hpp"
 #include "exec/fold_sum.hpp"
 
 namespace breccia::dem {
 namespace {
-
-/// Kinetic energy at the time of the forces, m/2 (v.v - dt_- dt_+ a.a / 4) with v = v_- + a dt_-/2:
-/// for equal steps m/2 v_-.v_+, with which the scheme's own balance closes to rounding
-/// (docs/theory.md, ledger).
-struct KineticEnergy {
-  Kick kick;
-  BR_HD double square(const Vec3& before, const Vec3& after) const {
-    const double span = 0.5 * (kick.last_dt + kick.next_dt);
-    const Vec3 a = span > 0.0 ? (1.0 / span) * (after - before) : Vec3{};
-    const Vec3 now = before + (0.5 * kick.last_dt) * a;
-    return dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a);
-  }
-  BR_HD void add_to(Energies& sum, Index e) const {
-    const Kick::Result next = kick(e);
-    const ElementState& s = kick.state[e];
-    sum.kinetic.add(0.5 * kick.mass[e] * square(s.velocity, next.velocity) +
-                    0.5 * kick.inertia[e] * square(s.spin, next.spin));
-  }
-};
 
 struct GravityPotential {
   Vec3 gravity;
@@ -39,12 +21,27 @@ struct GravityPotential {
   }
 };
 
+/// A kernel whose energies the host adds up by packs.
+template <class Kernel>
+struct ByPacks {
+  Kernel kernel;
+  Lanes lanes;
+  BR_HD void add_to(Energies& sum, Index i) const { kernel.add_to(sum, i); }
+  void add_run(Energies& sum, Index begin, Index end) const {
+    add_energies(lanes, kernel, begin, end, sum);
+  }
+};
+
 template <class Number, class Law>
 auto energies_of(const World& w, const LinkSet<Law>& set, const LinkGroup<Law>& g) {
   const auto shares = shares_of<Number>(set, w.elements.state.view());
   using Group = GroupEnergies<Law, std::remove_const_t<decltype(shares)>>;
-  return of_owned(w.domain, Energies{}, Group{g.law, g.begin, shares, w.elements.fixed.view()},
-                  ListedElement<>{set.a.view(), g.begin});
+  const Group group{g.law, g.begin, shares, w.elements.fixed.view()};
+  const ListedElement<> first{set.a.view(), g.begin};
+  if constexpr (LinkSet<Law>::kind == LinkKind::concrete)
+    return of_owned(w.domain, Energies{}, ByPacks<Group>{group, w.lanes}, first);
+  else
+    return of_owned(w.domain, Energies{}, group, first);
 }
 /// Links of the first group of a kind, which most models have alone.
 template <class Number, class Law, class... Rest>
@@ -96,25 +93,6 @@ struct ContactShares {
   }
 };
 
-struct ElementShares {
-  Kick kick;
-  View<const double> damping_work, load_work;
-
-  BR_HD void add_to(Energies& s, Index e) const {
-    s.damping.add(damping_work[e]);
-    s.work.add(load_work[e]);
-    // Moving books the work of these forces in the last and the next step; half is done.
-    const Kick::Given of = kick.given<double>(e);
-    if (of.fixed == 0 && !(kick.damping > 0.0)) return;
-    const ElementState now = read_record(kick.state, e);
-    const Kick::Result next = kick(e, now, of);
-    const Vec3 came = (0.5 * kick.last_dt) * now.velocity;
-    s.damping.add(dot(next.damped_force, came));
-    s.damping.add(dot(next.damped_torque, (0.5 * kick.last_dt) * now.spin));
-    if (of.fixed != 0) s.work.add(dot(kick.reaction(e, now.velocity, next, of), came));
-  }
-};
-
 template <class List, class... Rest>
 auto contacts_part(const World& w, const List& c, const Buffer<ContactPair>& pairs, Index materials,
                    const Buffer<Wall>& walls, const Parts<Rest...>& rest) {
@@ -140,8 +118,10 @@ Energies held(const World& w) {
   const bool falls = dot(w.given->gravity, w.given->gravity) > 0.0;
   const auto own = [&w](const auto& kernel) { return of_owned(w.domain, Energies{}, kernel); };
   const auto others = part(
-      e.size(), own(KineticEnergy{kick(w)}),
-      part(e.size(), own(ElementShares{kick(w), e.damping_work.view(), e.load_work.view()}),
+      e.size(), own(ByPacks<KineticEnergy>{{kick(w)}, w.lanes}),
+      part(e.size(),
+           own(ByPacks<ElementShares>{{kick(w), e.damping_work.view(), e.load_work.view()},
+                                      w.lanes}),
            part(falls ? e.size() : 0,
                 own(GravityPotential{w.given->gravity, e.state.view(), e.mass.view()}),
                 contacts_part(

@@ -76,11 +76,16 @@ constexpr std::uint64_t parts_of_a_link = 1024, one_link = std::uint64_t{1} << 3
 struct AddDamage {
   View<const Index> a, b;
   View<std::uint64_t> lost;
+  bool alone;  ///< whether one thread takes all links
 
   BR_HD void operator()(Index i, double damage) const {
     const auto parts =
         static_cast<std::uint64_t>(static_cast<double>(parts_of_a_link) * damage + 0.5);
-    for (const Index e : {a[i], b[i]}) count_up(lost[e], one_link + parts);
+    for (const Index e : {a[i], b[i]})
+      if (alone)
+        lost[e] += one_link + parts;
+      else
+        count_up(lost[e], one_link + parts);
   }
 };
 template <class Number>
@@ -200,7 +205,8 @@ Buffer<double> damage_of(const World& w) {
   Buffer<std::uint64_t> lost(w.exec.space, count);
   Buffer<double> damage(w.exec.space, count);
   w.each_set([&](const auto& set) {
-    const AddDamage add{set.a.view(), set.b.view(), lost.view()};
+    const bool alone = w.exec.space != Space::cuda && w.exec.threads <= 1;
+    const AddDamage add{set.a.view(), set.b.view(), lost.view(), alone};
     with_number(w.exec.precision, [&](auto number) {
       using Number = decltype(number);
       if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {

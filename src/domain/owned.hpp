@@ -52,6 +52,15 @@ struct AddOwned {
   BR_HD void add_to(Value& value, Index i) const {
     if (owned(element_of(i))) kernel.add_to(value, i);
   }
+  /// Of items [begin, end), where the kernel can add several at once.
+  template <class Value>
+  void add_run(Value& value, Index begin, Index end) const requires requires {
+    kernel.add_run(value, begin, end);
+  }
+  {
+    if (owned.owned.size == 0) return kernel.add_run(value, begin, end);
+    for (Index i = begin; i < end; ++i) add_to(value, i);
+  }
 };
 /// The items of a kernel whose elements this rank owns, for fold, FoldSum and items_where.
 /// @param neutral  what an item of a ghost counts as

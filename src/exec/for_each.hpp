@@ -120,6 +120,16 @@ inline void fold_item(Value& value, const Kernel& kernel, Index i, const Combine
     value = combine(value, kernel(i));
 }
 
+/// Items [begin, end): by add_run(value, begin, end), where a kernel has one.
+template <class Value, class Kernel, class Combine>
+inline void fold_items(Value& value, const Kernel& kernel, Index begin, Index end,
+                       const Combine& combine) {
+  if constexpr (requires { kernel.add_run(value, begin, end); })
+    kernel.add_run(value, begin, end);
+  else
+    for (Index i = begin; i < end; ++i) fold_item(value, kernel, i, combine);
+}
+
 /// neutral, kernel(0), kernel(1), ... combined into one value, on the host in fixed chunks of
 /// `fold_chunk`. The combination must not depend on order (least, largest, sums of whole numbers,
 /// ExactSum), so that threads and devices all give the same bits.
@@ -150,7 +160,7 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
     const KernelScope scope;
     Value value = neutral;
     const Index end = std::min(count, (chunk + 1) * fold_chunk);
-    for (Index i = chunk * fold_chunk; i < end; ++i) fold_item(value, kernel, i, combine);
+    fold_items(value, kernel, chunk * fold_chunk, end, combine);
     partial[static_cast<std::size_t>(chunk)].value = value;
   };
   if (exec.threads <= 1 || chunks < 2) {

@@ -21,25 +21,30 @@ struct ElementShares {
 
   BR_HD void add_to(Energies& s, Index t) const {
     const auto& kick = stored.kick;
-    s.damping.add(viscous_work[t]);
-    s.damping.add(damping_work[t]);
-    s.work.add(load_work[t]);
-    if (is_gone<Shape>(kick.holds, kick.hold[t])) return;
+    double kinetic = 0.0, damping = viscous_work[t] + damping_work[t], work = load_work[t];
+    if (is_gone<Shape>(kick.holds, kick.hold[t])) {
+      s.damping.add(damping);
+      s.work.add(work);
+      return;
+    }
     const auto next = kick(t);
-    const double span = kick.span();
+    const double over_span = kick.span() > 0.0 ? 1.0 / kick.span() : 0.0;
     for (int k = 0; k < Shape::corners; ++k) {
       // m/2 (v.v - dt_- dt_+ a.a / 4): the leapfrog's own balance closes with it
       const Vector before = kick.nodes[t].at[k].velocity;
-      const Vector a = span > 0.0 ? (1.0 / span) * (next.velocity[k] - before) : Vector{};
+      const Vector a = over_span * (next.velocity[k] - before);
       const Vector now = before + (0.5 * kick.last_dt) * a;
-      s.kinetic.add(0.5 * kick.mass[t] *
-                    (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a)));
+      kinetic += 0.5 * kick.mass[t] *
+                 (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a));
       // Moving books the work of these forces in the last and the next step; half is done.
       const Vector came = (0.5 * kick.last_dt) * before;
-      s.damping.add(dot(next.damped[k], came));
-      if (external.size > 0) s.work.add(dot(external[t].at[k], came));
-      if (kick.hold[t] >= 0) s.work.add(dot(kick.reaction(kick.given(t), k, next), came));
+      damping += dot(next.damped[k], came);
+      if (external.size > 0) work += dot(external[t].at[k], came);
+      if (kick.hold[t] >= 0) work += dot(kick.reaction(kick.given(t), k, next), came);
     }
+    s.kinetic.add(kinetic);
+    s.damping.add(damping);
+    s.work.add(work);
     s.elastic.add(stored.elastic(t));
   }
 };
@@ -81,21 +86,16 @@ struct JointShares {
       return;
     }
     const auto held = stored(i);
-    s.elastic.add(held.open);
-    s.elastic.add(held.slide);
     if (stage[i] == Stage::whole) {  // pressure took this on its slip, and gives it on the way back
-      s.elastic.add(taken.open);
-      s.elastic.add(taken.slide);
+      s.elastic.add((held.open + held.slide) + (taken.open + taken.slide));
       return;
     }
+    s.elastic.add(held.open + held.slide);
     const Work beyond{taken.open - held.open, taken.slide - held.slide};
     const Work spent = beyond.spent();
     s.fracture.add(spent.open);
     add_slide(s, i, spent.slide, held.rubs);
-    if (!(beyond.open + beyond.slide > 0.0)) {
-      s.elastic.add(beyond.open);
-      s.elastic.add(beyond.slide);
-    }
+    if (!(beyond.open + beyond.slide > 0.0)) s.elastic.add(beyond.open + beyond.slide);
   }
   /// Energies that joint i has spent by sliding: on friction, and on its fracture.
   /// @param held  of the work of friction, what springs hold
@@ -111,8 +111,7 @@ struct CoupleShares {
   View<const State> state;
   BR_HD void add_to(Energies& s, Index i) const {
     s.elastic.add(state[i].work - state[i].slid);
-    s.friction.add(state[i].slid);
-    s.friction.add(state[i].rubbed);
+    s.friction.add(state[i].slid + state[i].rubbed);
     s.contact.add(state[i].lost);
   }
 };

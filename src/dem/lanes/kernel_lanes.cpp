@@ -89,4 +89,17 @@ BR_WHOLE void BR_PACKS::run(const AddLinks& add, const Links& links, Index from,
 BR_EACH_ADDED_KERNEL(BR_INSTANTIATE)
 #undef BR_INSTANTIATE
 
+template <class Kernel>
+BR_WHOLE Index BR_PACKS::add(const Kernel& kernel, Index begin, Index end, Energies& sum) {
+  EnergiesOf<WidestPack> packs;
+  Index i = begin;
+  for (; i + width <= end; i += width)
+    if (!kernel.template add_pack<WidestPack>(packs, i)) break;
+  add_packs<WidestPack>(sum, packs);
+  return i;
+}
+#define BR_INSTANTIATE(Kernel) template Index BR_PACKS::add(const Kernel&, Index, Index, Energies&);
+BR_EACH_ENERGY_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
+
 }  // namespace breccia::dem

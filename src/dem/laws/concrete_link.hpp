@@ -164,14 +164,18 @@ struct ConcreteLinkOf {
     return select(kept_rate < 0.0, -1.0 * kept_rate, max(one, borne));
   }
   /// 1 - secant stiffness / K_n of an intact link after a largest opening >= 0.  [-]
-  BR_HD double damage(const LinkConstants<double>& link, double opening) const {
-    const TensionSoftening<double> t = tension(link);
-    return t.whole(opening) ? 0.0 : t.damage(opening);
+  template <class R>
+  BR_HD R damage(const LinkConstants<R>& link, const R& opening) const {
+    const TensionSoftening<R> t = tension(link);
+    const auto torn = !t.whole(opening);
+    return any(torn) ? select(torn, t.damage(opening), constant<R>(0.0)) : constant<R>(0.0);
   }
   /// Energy that an intact link has spent on its opening so far.  [J]
-  BR_HD double spent(const LinkConstants<double>& link, double opening) const {
-    const TensionSoftening<double> t = tension(link);
-    return t.whole(opening) ? 0.0 : t.spent(opening);
+  template <class R>
+  BR_HD R spent(const LinkConstants<R>& link, const R& opening) const {
+    const TensionSoftening<R> t = tension(link);
+    const auto torn = !t.whole(opening);
+    return any(torn) ? select(torn, t.spent(opening), constant<R>(0.0)) : constant<R>(0.0);
   }
   /// N of a link at a stretch u, tension positive.  [N]
   BR_HD double normal_force(const LinkConstants<double>& link, double stretch,
@@ -191,21 +195,21 @@ struct ConcreteLinkOf {
     return state.shear + branch.shear - ((normal + branch.normal) / distance) * way;
   }
   /// Energy a link stores at a stretch u.  [J]
-  BR_HD double stored(const LinkConstants<double>& link, double stretch,
-                      const LinkState<double>& state) const {
-    const double kn = link.stiffness, kt = shear_ratio * kn;
-    const double kr = rolling_ratio * kt * link.radius * link.radius;
-    const bool intact = state.opening >= 0.0;
-    if (state.opening < 0.5 * (link_broken + link_released)) return 0.0;
-    double energy = 0.0;
-    if (stretch < 0.0)
-      energy = 0.5 * kn * stretch * stretch;
-    else if (intact)
-      energy = 0.5 * kn * (1.0 - damage(link, state.opening)) * stretch * stretch;
-    if (kt > 0.0) energy += dot(state.shear, state.shear) / (2.0 * kt);
-    if (kr > 0.0) energy += dot(state.moment, state.moment) / (2.0 * kr);
+  template <class R>
+  BR_HD R stored(const LinkConstants<R>& link, const R& stretch, const LinkState<R>& state) const {
+    const R zero = constant<R>(0.0), one = constant<R>(1.0);
+    const R kn = link.stiffness, kt = shear_ratio * kn;
+    const R along = 0.5 * kn * (1.0 - damage(link, state.opening)) * stretch * stretch;
+    R energy = select(stretch < 0.0, 0.5 * kn * stretch * stretch,
+                      select(state.opening >= 0.0, along, zero));
+    const auto add = [&](const Vec3Of<R>& carried, const R& k) {
+      const auto acts = k > 0.0;
+      energy = select(acts, energy + dot(carried, carried) / (2.0 * select(acts, k, one)), energy);
+    };
+    add(state.shear, kt);
+    add(state.moment, rolling_ratio * kt * link.radius * link.radius);
     if (damps()) energy += damping.stored(link, kt, state.branch);
-    return energy;
+    return select(state.opening < 0.5 * (link_broken + link_released), zero, energy);
   }
 
  private:

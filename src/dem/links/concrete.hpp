@@ -122,7 +122,7 @@ template <class Number, class Actions = View<PairForceOf<StoredAs<Number>>>>
 struct ConcreteLinkForces {
   static constexpr const char* name = "dem.concrete_links";
   static constexpr bool swept = ConcreteLinks::swept;
-  static constexpr int least_blocks = sizeof(Number) == sizeof(double) ? 4 : 0;  // 128 registers
+  static constexpr int least_blocks = 4;  // 128 registers
   using Stores = StoredAs<Number>;
   using Item = ComputedIn<Number>;
   using Law = ConcreteLinkOf<ConstantOf<Item>>;
@@ -299,21 +299,25 @@ struct ConcreteShares {
   PlanesView<const float> branch_shear;
   View<const double> damped_away;
 
-  BR_HD void add_to(Energies& s, const ConcreteLink& law, Index i) const {
-    const double touching = state_of[a[i]].radius + state_of[b[i]].radius;
-    LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
-    if (law.rated()) link.factor = law.factor_of<double>(link, opening[i], rate[i]);
-    const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
-    LinkState<double> state{opening[i], shear[i], moment[i]};
+  /// Energies of link i, or of a pack.
+  template <class R>
+  BR_HD void add_to(EnergiesOf<R>& s, const ConcreteLink& law, Index i) const {
+    const LinkPair<R> ends = load_pair<R>(state_of, load_indices<R>(a, i), load_indices<R>(b, i));
+    const R touching = ends.touching();
+    LinkConstants<R> link{load<R>(length, i), load<R>(stiffness, i), load<R>(area, i),
+                          0.5 * touching, touching};
+    LinkState<R> state{load<R>(opening, i), load<R>(shear, i), load<R>(moment, i)};
+    if (law.rated()) link.factor = law.factor_of<R>(link, state.opening, load<R>(rate, i));
+    const R stretch = norm(ends.motion.way) - link.length;
     if (law.damps()) {
-      state.branch = {branch_normal[i], branch_shear[i]};
-      s.damping.add(damped_away[i]);
+      state.branch = {load<R>(branch_normal, i), load<R>(branch_shear, i)};
+      s.damping.add(load<R>(damped_away, i));
     }
     s.elastic.add(law.stored(link, stretch, state));
-    s.fracture.add(broke[i]);
-    if (state.opening >= 0.0) s.fracture.add(law.spent(link, state.opening));
-    s.plastic.add(yielded[i]);
-    s.friction.add(slid[i]);
+    s.fracture.add(load<R>(broke, i));
+    s.fracture.add(select(state.opening >= 0.0, law.spent(link, state.opening), constant<R>(0.0)));
+    s.plastic.add(load<R>(yielded, i));
+    s.friction.add(load<R>(slid, i));
   }
 };
 

@@ -121,7 +121,7 @@ struct LinkSpace {
 };
 
 /// Energies of one group of links.
-/// @tparam Shares  a kernel with add_to(energies, law, link)
+/// @tparam Shares  a kernel with add_to(energies, law, link); with add_to<R>() for packs, too
 template <class Law, class Shares>
 struct GroupEnergies {
   Law law;
@@ -130,11 +130,27 @@ struct GroupEnergies {
   View<const std::uint8_t> fixed;
   BR_HD void add_to(Energies& sum, Index k) const {
     const Index i = first + k;
-    if (!is_gone(fixed[shares.a[i]])) return shares.add_to(sum, law, i);
+    if (!is_gone(fixed[shares.a[i]])) return add(sum, i);
     Energies spent;
-    shares.add_to(spent, law, i);
+    add(spent, i);
     spent.elastic = ExactSum();  // it left with its element
     sum = sum + spent;
+  }
+  /// Of a pack of links. @returns whether none of them has left with its element
+  template <class R>
+  bool add_pack(EnergiesOf<R>& sum, Index k) const {
+    for (Index j = 0; j < width_of<R>; ++j)
+      if (is_gone(fixed[shares.a[first + k + j]])) return false;
+    shares.template add_to<R>(sum, law, first + k);
+    return true;
+  }
+
+ private:
+  BR_HD void add(Energies& sum, Index i) const {
+    if constexpr (requires { shares.template add_to<double>(sum, law, i); })
+      shares.template add_to<double>(sum, law, i);
+    else
+      shares.add_to(sum, law, i);
   }
 };
 

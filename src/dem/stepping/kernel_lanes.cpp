@@ -60,4 +60,22 @@ void run_adding([[maybe_unused]] Lanes lanes, const AddLinks& add, const Links& 
 BR_EACH_ADDED_KERNEL(BR_INSTANTIATE)
 #undef BR_INSTANTIATE
 
+template <class Kernel>
+void add_energies([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end,
+                  Energies& sum) {
+#if defined(BR_WIDE_LANES)
+  for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
+    begin = lanes == Lanes::eight ? PacksAvx512::add(kernel, begin, end, sum)
+                                  : PacksAvx2::add(kernel, begin, end, sum);
+    if (end - begin < width) break;
+    for (const Index next = begin + width; begin < next; ++begin) kernel.add_to(sum, begin);
+  }
+#endif
+  for (; begin < end; ++begin) kernel.add_to(sum, begin);
+}
+#define BR_INSTANTIATE(Kernel) \
+  template void add_energies(Lanes, const Kernel&, Index, Index, Energies&);
+BR_EACH_ENERGY_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
+
 }  // namespace breccia::dem

@@ -2,6 +2,7 @@
 // The widest form of the kernels that this processor can run, found at run time; same bits in all.
 
 #include "dem/element_kernels.hpp"
+#include "dem/energy_kernels.hpp"
 #include "dem/links/all.hpp"
 #include "dem/stepping/add_links.hpp"
 #include "exec/lanes.hpp"
@@ -34,6 +35,18 @@ void run_adding(Lanes lanes, const AddLinks& add, const Links& links, Index from
   X(ConcreteLinkForces<Single>, float)  \
   X(LdpmEdgeForces, double)
 
+/// Adds the energies of the items [begin, end) to `sum`.
+template <class Kernel>
+void add_energies(Lanes lanes, const Kernel& kernel, Index begin, Index end, Energies& sum);
+using ConcreteEnergies = GroupEnergies<ConcreteLink, ConcreteShares<double>>;
+using ConcreteEnergiesInSingle = GroupEnergies<ConcreteLink, ConcreteShares<float>>;
+/// Calls X(kernel) for those that know packs.
+#define BR_EACH_ENERGY_KERNEL(X) \
+  X(ConcreteEnergies)            \
+  X(ConcreteEnergiesInSingle)    \
+  X(KineticEnergy)               \
+  X(ElementShares)
+
 /// How far a kernel came, and whether an element on the way has used its margin up.
 struct MovedTo {
   Index end;
@@ -58,6 +71,8 @@ struct PacksAvx2 {
   template <class Links, class Number>
   static void run(const AddLinks& add, const Links& links, Index from, Index to,
                   const PairForceOf<Number>* actions);
+  template <class Kernel>
+  static Index add(const Kernel& kernel, Index begin, Index end, Energies& sum);
 };
 struct PacksAvx512 {
   template <class Kernel>
@@ -68,6 +83,8 @@ struct PacksAvx512 {
   template <class Links, class Number>
   static void run(const AddLinks& add, const Links& links, Index from, Index to,
                   const PairForceOf<Number>* actions);
+  template <class Kernel>
+  static Index add(const Kernel& kernel, Index begin, Index end, Energies& sum);
 };
 
 }  // namespace breccia::dem

@@ -17,7 +17,7 @@ template <class Number>
 struct GatherWide {
   static constexpr const char* name = "dem.gather_wide";
   static constexpr Index width = 8;
-  static constexpr int at_once = 4;  ///< actions of a row that are read before the first is added
+  static constexpr int at_once = 2;  ///< actions of a row that are read before the first is added
   GatherForces gather;
   LinkRows::Seen rows_a, rows_b;
   View<const PairForceOf<Number>> actions;

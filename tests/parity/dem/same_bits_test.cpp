@@ -79,6 +79,7 @@ TEST(SameBits, for_any_width_where_supports_move_and_motion_is_damped) {
       EXPECT_GT(energy.damping, 0.0);
     }
     EXPECT_EQ(dem::state_hash(w), hash) << static_cast<int>(lanes);
+    EXPECT_EQ(now.kinetic, energy.kinetic) << static_cast<int>(lanes);
     EXPECT_EQ(now.work, energy.work) << static_cast<int>(lanes);
     EXPECT_EQ(now.damping, energy.damping) << static_cast<int>(lanes);
   }
@@ -213,6 +214,8 @@ TEST(SameBits, of_links_that_wear_and_crush) {
         EXPECT_LT(energy.error_relative, 1e-3);
       }
       EXPECT_EQ(dem::state_hash(w), hash) << threads << ", " << static_cast<int>(lanes);
+      EXPECT_EQ(now.kinetic, energy.kinetic);
+      EXPECT_EQ(now.elastic, energy.elastic);
       EXPECT_EQ(now.plastic, energy.plastic);
       EXPECT_EQ(now.fracture, energy.fracture);
       EXPECT_EQ(now.friction, energy.friction);
