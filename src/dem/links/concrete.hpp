@@ -286,6 +286,13 @@ ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, 
           in.step};
 }
 
+/// Parts of the law that some of the links have.
+inline ConcreteParts parts_of(const LinkSet<ConcreteLink>& set) {
+  ConcreteParts parts = 0;
+  for (const LinkGroup<ConcreteLink>& group : set.groups) parts |= group.law.parts();
+  return parts;
+}
+
 /// Energies of cohesive links.
 template <class Number>
 struct ConcreteShares {

@@ -59,7 +59,8 @@ struct MoveWalls {
 };
 
 /// Links of all groups in one launch, each by its group's law.
-template <class Kernel>
+/// @tparam parts  of the law of concrete, those that some group may have
+template <class Kernel, ConcreteParts parts = concrete_all>
 struct Grouped {
   static constexpr const char* name = Kernel::name;
   using Law = typename Kernel::Law;
@@ -81,7 +82,11 @@ struct Grouped {
   }
   BR_HD void load_late(Index i, Loaded& loaded) const { kernel.load_late(i, loaded.link); }
   BR_HD void update(Index i, const Loaded& loaded) const {
-    kernel.update(laws[loaded.group], i, loaded.link);  // by reference: a copy fills registers
+    const Law& law = laws[loaded.group];  // by reference: a copy fills registers
+    if constexpr (requires { kernel.template update<parts>(law, i, loaded.link); })
+      kernel.template update<parts>(law, i, loaded.link);
+    else
+      kernel.update(law, i, loaded.link);
   }
 };
 
@@ -115,10 +120,19 @@ class LaunchedForces {
   }
 
  protected:
+  /// Concrete that is bounded alone has a kernel without spilled registers (bench/notes/gpu.md).
   template <class Number>
   void pair_forces(World& w) const {
+    if ((parts_of(w.concrete) & ~concrete_bounded) == 0)
+      pair_forces<Number, concrete_bounded>(w);
+    else
+      pair_forces<Number, concrete_all>(w);
+  }
+  template <class Number, ConcreteParts parts>
+  void pair_forces(World& w) const {
     const auto of = [&](auto& set, Index first_action) {
-      return by_(Grouped(link_kernel<Number>(w, set, {}, first_action), set.on_device));
+      const auto kernel = link_kernel<Number>(w, set, {}, first_action);
+      return by_(Grouped<std::remove_cv_t<decltype(kernel)>, parts>(kernel, set.on_device));
     };
     const Index before_parallel = w.steel.size() + w.interface.size();
     for_each_part(

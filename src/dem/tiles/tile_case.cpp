@@ -162,8 +162,6 @@ TileCase<Number> case_of(World& w, TilePlan& plan, const StopAt& stop) {
                                              w.contact_actions),
                       twins = contacts_of(w, room, plan.twin_state, plan.twin_slid,
                                           plan.twin_damped, plan.twin_actions);
-  ConcreteParts parts = 0;
-  for (const auto& group : w.concrete.groups) parts |= group.law.parts();
   StepClock start;
   const EndOfStep<StepRule> end{step_rule(w), w.given->time.evaluate_every};
   start.to_evaluation = end.to_evaluation(w.step);
@@ -174,7 +172,7 @@ TileCase<Number> case_of(World& w, TilePlan& plan, const StopAt& stop) {
   using Law = typename TileCase<Number>::Law;
   return {link_kernel<Number>(w, w.concrete, {}, 0),
           w.concrete.released<StoredAs<Number>>(),
-          parts,
+          parts_of(w.concrete),
           link_kernel<Number>(w, w.steel, {}, 0),
           link_kernel<Number>(w, w.interface, {}, w.steel.size()),
           contacts,
