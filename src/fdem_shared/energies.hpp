@@ -34,8 +34,8 @@ struct ElementShares {
       const Vector before = kick.nodes[t].at[k].velocity;
       const Vector a = over_span * (next.velocity[k] - before);
       const Vector now = before + (0.5 * kick.last_dt) * a;
-      kinetic += 0.5 * kick.mass[t] *
-                 (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a));
+      kinetic +=
+          0.5 * kick.mass[t] * (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a));
       // Moving books the work of these forces in the last and the next step; half is done.
       const Vector came = (0.5 * kick.last_dt) * before;
       damping += dot(next.damped[k], came);
