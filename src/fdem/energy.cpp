@@ -1,6 +1,7 @@
 // The ledger of an FDEM run, per unit thickness: energies of triangles and joints, and what
 // fdem_shared/energies.hpp makes of them.
 
+#include "fdem/joints/joint_energies.hpp"
 #include "fdem/shape.hpp"
 #include "fdem_shared/energies.hpp"
 
@@ -22,24 +23,6 @@ struct StoredByTriangles {
   }
 };
 
-struct StoredByJoints {
-  View<const NodeState> nodes;
-  View<const JointBond> bonds;
-  View<const JointEnds> ends;
-  View<const Index> law;
-  View<const double> length, strength;
-  View<const Vec2> preset;
-  View<const JointPoints> points;
-
-  BR_HD StoredEnergy operator()(Index i) const {
-    const JointEnds& e = ends[i];
-    const JointOpening<double> o = opening_of(nodes[e.a0].position, nodes[e.a1].position,
-                                              nodes[e.b0].position, nodes[e.b1].position);
-    const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
-    return stored_in(bonds[law[i]], strength[i], length[i], offset, o, points[i]);
-  }
-};
-
 }  // namespace
 
 StoredByTriangles stored_by_elements(const World& w) {
@@ -54,7 +37,8 @@ StoredByJoints stored_by_joints(const World& w) {
           j.length.view(),
           j.strength.view(),
           j.preset.view(),
-          j.points.view()};
+          j.points.view(),
+          w.lanes};
 }
 
 Energies held(const World& w) {

@@ -3,6 +3,8 @@
 // add up to those of the whole. Made for each method in its energy.cpp, which says what elements
 // and joints store.
 
+#include <algorithm>
+
 #include "core/energy_split.hpp"
 #include "domain/owned.hpp"
 #include "exec/fold_sum.hpp"
@@ -96,6 +98,17 @@ struct JointShares {
     s.fracture.add(spent.open);
     add_slide(s, i, spent.slide, held.rubs);
     if (!(beyond.open + beyond.slide > 0.0)) s.elastic.add(beyond.open + beyond.slide);
+  }
+  /// Of joints [begin, end), where the method adds whole ones by packs.
+  void add_run(Energies& s, Index begin, Index end) const requires requires {
+    stored.add_whole(s.elastic, stage, work, begin, end);
+  }
+  {
+    while (begin < end) {
+      begin = stored.add_whole(s.elastic, stage, work, begin, end);
+      for (const Index next = std::min(end, begin + stored.width()); begin < next; ++begin)
+        add_to(s, begin);
+    }
   }
   /// Energies that joint i has spent by sliding: on friction, and on its fracture.
   /// @param held  of the work of friction, what springs hold

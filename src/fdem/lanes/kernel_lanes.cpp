@@ -69,4 +69,15 @@ Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end)
   return moved;
 }
 
+[[gnu::flatten]] Index BR_PACKS::add(const WholeJoints& joints, Index begin, Index end,
+                                     ExactSum& elastic) {
+  Index i = begin;
+  if (i + width > end || !joints.are_whole<WidestPack>(i)) return i;
+  PackSum<WidestPack> sum;
+  for (; i + width <= end && joints.are_whole<WidestPack>(i); i += width)
+    sum.add(joints.elastic<WidestPack>(i));
+  elastic.add(sum.sum());
+  return i;
+}
+
 }  // namespace breccia::fdem

@@ -230,15 +230,39 @@ struct StoredEnergy {
   double rubs = 0.0;  ///< of slide, what residual friction holds
 };
 /// Of (2 r - r^2) f, r = x / p, up to p.
-BR_HD inline double stored_on_parabola(double f, double x, double p) {
-  if (!(p > 0.0)) return 0.0;
-  const double r = min(x, p) / p;
-  return f * p * (r * r - r * r * r / 3.0);
+template <class R>
+BR_HD inline R stored_on_parabola(const R& f, const R& x, const R& p) {
+  const auto rises = p > 0.0;
+  const R r = min(x, p) / select(rises, p, constant<R>(1.0));
+  return select(rises, f * p * (r * r - r * r * r / 3.0), constant<R>(0.0));
+}
+/// By opening and by slip.
+template <class R>
+struct StoredUndamaged {
+  R open, slide;
+};
+/// Of a point that has no damage: on its rising branches, or pressed.
+/// @param tension, cohesion  of this joint  [Pa]  @param h  its length  [m]
+template <class R>
+BR_HD StoredUndamaged<R> stored_undamaged(const R& stiffness, const R& tension, const R& cohesion,
+                                          const R& friction, const R& h, const R& opening,
+                                          const R& slip) {
+  const auto pressed = opening < 0.0;
+  const R pressure = select(pressed, stiffness * opening / h, constant<R>(0.0));
+  const R shear = cohesion - friction * pressure;
+  const R o_p = 2.0 * h * tension / stiffness, s_p = 2.0 * h * shear / stiffness;
+  return {select(pressed, 0.5 * pressure * opening, stored_on_parabola<R>(tension, opening, o_p)),
+          stored_on_parabola<R>(shear, abs(slip), s_p)};
 }
 /// If it were unloaded now.
 BR_HD inline StoredEnergy edge_stored(const JointBond& law, double strength, double h,
                                       double opening, double slip, const BondState<double>& state) {
   const double tension = law.tension * strength, o_p = 2.0 * h * tension / law.stiffness;
+  if (!(state.damage > 0.0 || state.opening > 0.0 || state.slip > 0.0)) {
+    const StoredUndamaged<double> whole = stored_undamaged<double>(
+        law.stiffness, tension, law.cohesion * strength, law.friction, h, opening, slip);
+    return {whole.open, whole.slide, 0.0};
+  }
   const double pressure = opening < 0.0 ? law.stiffness * opening / h : 0.0;
   const double shear = law.cohesion * strength - law.friction * pressure;
   const double s_p = 2.0 * h * shear / law.stiffness;

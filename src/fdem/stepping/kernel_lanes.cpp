@@ -125,4 +125,16 @@ Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Inde
   return while_whole(lanes, kernel, begin, end);
 }
 
+Index StoredByJoints::add_whole([[maybe_unused]] ExactSum& elastic,
+                                [[maybe_unused]] const View<const JointStage>& stage,
+                                [[maybe_unused]] const View<const JointWork>& work, Index begin,
+                                [[maybe_unused]] Index end) const {
+#if defined(BR_WIDE_LANES)
+  const WholeJoints joints{*this, stage, work};
+  if (lanes == Lanes::eight) return PacksAvx512::add(joints, begin, end, elastic);
+  if (lanes == Lanes::four) return PacksAvx2::add(joints, begin, end, elastic);
+#endif
+  return begin;
+}
+
 }  // namespace breccia::fdem

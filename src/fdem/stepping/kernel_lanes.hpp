@@ -3,6 +3,7 @@
 
 #include "exec/lanes.hpp"
 #include "fdem/contact/couples.hpp"
+#include "fdem/joints/joint_energies.hpp"
 #include "fdem/joints/joint_lanes.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
 
@@ -50,6 +51,7 @@ struct PacksAvx2 {
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+  static Index add(const WholeJoints& joints, Index begin, Index end, ExactSum& elastic);
 };
 struct PacksAvx512 {
   static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
@@ -61,6 +63,7 @@ struct PacksAvx512 {
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+  static Index add(const WholeJoints& joints, Index begin, Index end, ExactSum& elastic);
 };
 
 }  // namespace breccia::fdem

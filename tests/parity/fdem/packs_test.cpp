@@ -83,6 +83,9 @@ void expect_same_in_packs(const char* criterion, const char* precision, double p
     expect_same(one.triangles.nodes, w.triangles.nodes, "nodes");
     expect_same(one.triangles.damping_work, w.triangles.damping_work, "damping");
     expect_same(one.triangles.load_work, w.triangles.load_work, "loads and supports");
+    const Energies by_one = fdem::held(one), by_packs = fdem::held(w);
+    EXPECT_GT(by_one.elastic.value(), 0.0);
+    EXPECT_EQ(std::memcmp(&by_packs, &by_one, sizeof by_one), 0);
   }
 }
 
