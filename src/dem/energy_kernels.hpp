@@ -38,7 +38,7 @@ struct KineticEnergy {
   }
 };
 
-/// What damping has taken from elements and supports have put into them.
+/// Work that damping has taken from elements, and that supports have put into them.
 struct ElementShares {
   Kick kick;
   View<const double> damping_work, load_work;

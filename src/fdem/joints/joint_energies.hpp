@@ -1,5 +1,5 @@
 #pragma once
-// What joints store, one by one, and whole ones by packs.
+// Energies that joints store: one by one, and of whole ones by packs.
 
 #include "core/energy.hpp"
 #include "exec/lanes.hpp"
@@ -10,7 +10,7 @@
 
 namespace breccia::fdem {
 
-/// What a joint would give back if it were unloaded now.
+/// Energy that a joint would give back if it were unloaded now.
 struct StoredByJoints {
   View<const NodeState> nodes;
   View<const JointBond> bonds;
