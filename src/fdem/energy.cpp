@@ -3,30 +3,12 @@
 
 #include "fdem/joints/joint_energies.hpp"
 #include "fdem/shape.hpp"
+#include "fdem/triangles/triangle_energies.hpp"
 #include "fdem_shared/energies.hpp"
 
 namespace breccia::fdem {
-namespace {
-
-struct StoredByTriangles {
-  Kick kick;
-  View<const Index> material;
-  View<const ElasticTriangle> laws;
-  View<const Mat2> shape_inverse;
-
-  BR_HD double elastic(Index t) const {
-    Vec2 x[3], v[3];
-    split(kick.nodes[t], x, v);
-    const Mat2& inverse_shape = shape_inverse[t];
-    const double area = 0.5 / determinant(inverse_shape);
-    return area * laws[material[t]].energy(deformation(inverse_shape, x, v));
-  }
-};
-
-}  // namespace
-
 StoredByTriangles stored_by_elements(const World& w) {
-  return {kick(w), laws_of(w), w.given->laws.view(), w.triangles.shape_inverse.view()};
+  return {kick(w), laws_of(w), w.given->laws.view(), w.triangles.shape_inverse.view(), w.lanes};
 }
 StoredByJoints stored_by_joints(const World& w) {
   const Joints& j = w.joints;

@@ -8,48 +8,11 @@
 #include "core/energy_split.hpp"
 #include "domain/owned.hpp"
 #include "exec/fold_sum.hpp"
+#include "fdem_shared/element_energies.hpp"
 #include "fdem_shared/laws/residual_work.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
-
-/// @tparam Stored  a method's: kick, elastic(t)
-template <class Shape, class Stored>
-struct ElementShares {
-  using Vector = typename Shape::Vector;
-  Stored stored;
-  View<const typename Shape::CornersOfElement> external;
-  View<const double> viscous_work, damping_work, load_work;
-
-  BR_HD void add_to(Energies& s, Index t) const {
-    const auto& kick = stored.kick;
-    double kinetic = 0.0, damping = viscous_work[t] + damping_work[t], work = load_work[t];
-    if (is_gone<Shape>(kick.holds, kick.hold[t])) {
-      s.damping.add(damping);
-      s.work.add(work);
-      return;
-    }
-    const auto next = kick(t);
-    const double over_span = kick.span() > 0.0 ? 1.0 / kick.span() : 0.0;
-    for (int k = 0; k < Shape::corners; ++k) {
-      // m/2 (v.v - dt_- dt_+ a.a / 4): the leapfrog's own balance closes with it
-      const Vector before = kick.nodes[t].at[k].velocity;
-      const Vector a = over_span * (next.velocity[k] - before);
-      const Vector now = before + (0.5 * kick.last_dt) * a;
-      kinetic +=
-          0.5 * kick.mass[t] * (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a));
-      // Moving books the work of these forces in the last and the next step; half is done.
-      const Vector came = (0.5 * kick.last_dt) * before;
-      damping += dot(next.damped[k], came);
-      if (external.size > 0) work += dot(external[t].at[k], came);
-      if (kick.hold[t] >= 0) work += dot(kick.reaction(kick.given(t), k, next), came);
-    }
-    s.kinetic.add(kinetic);
-    s.damping.add(damping);
-    s.work.add(work);
-    s.elastic.add(stored.elastic(t));
-  }
-};
 
 template <class Shape>
 struct GravityPotential {
@@ -149,10 +112,10 @@ Energies held_by_part(const World& w) {
   };
   all.add_parts(part(
       t.size(),
-      own(
-          ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
-              of_elements, t.external.view(), t.viscous_work.view(), t.damping_work.view(),
-              t.load_work.view()},
+      own(ElementShares<std::remove_cv_t<decltype(of_elements)>>{of_elements, t.external.view(),
+                                                                 t.viscous_work.view(),
+                                                                 t.damping_work.view(),
+                                                                 t.load_work.view()},
           ItemItself{}),
       part(j.size(),
            own(

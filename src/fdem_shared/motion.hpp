@@ -30,6 +30,8 @@ BR_HD inline Vec3 opposed(const Vec3& f, const Vec3& v) {
 template <class Of>
 struct KickOf {
   using Vector = typename Of::Vector;
+  using Nodes = typename Of::Nodes;
+  using Corners = typename Of::Corners;
   using Hold = typename Of::Hold;
   static constexpr int corners = static_cast<int>(std::extent_v<decltype(Of::Corners::at)>);
   static constexpr int dimension = corners - 1;
@@ -66,6 +68,8 @@ struct KickOf {
     return span() > 0.0 ? before + (0.5 * last_dt / span()) * (after - before) : before;
   }
   BR_HD Given given(Index t) const { return {nodes[t], force[t], mass[t], hold[t]}; }
+  /// Whether an element has been taken out of the model.
+  BR_HD bool is_gone(Index t) const { return hold[t] >= 0 && holds[hold[t]].gone != 0; }
 
   BR_HD Result operator()(Index t) const { return (*this)(given(t)); }
   BR_HD Result operator()(const Given& of) const {
@@ -91,6 +95,22 @@ struct KickOf {
       r.damped[k] = held_parts(bits, Vector{}, r.damped[k]);  // what is held is not damped
     }
     return r;
+  }
+  /// A component of Result, of a free corner of each element in a pack.
+  template <class R>
+  struct FreePart {
+    R velocity, damped;
+  };
+  /// @param acts  the force on it, gravity aside  @param m  its mass
+  template <class R>
+  FreePart<R> free_part(int axis, const R& before, const R& acts, const R& m) const {
+    const R scale = span() / m;
+    R f = acts + m * part_of(gravity, axis), damped = constant<R>(0.0);
+    if (damping > 0.0) {
+      damped = damping * opposed<R>(f, before + (0.5 * scale) * f);
+      f = f - damped;
+    }
+    return {before + scale * f, damped};
   }
   /// Force that holds a corner to its prescribed motion; zero in free directions.
   /// [N; in 2D N/m]

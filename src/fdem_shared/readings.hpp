@@ -72,7 +72,7 @@ struct ReadCorner {
   BR_HD Readings operator()(Index i) const {
     const Index n = members.size > 0 ? members[i] : i;
     const Index t = n / corners, k = n % corners;
-    if (is_gone<Shape>(kick.holds, kick.hold[t])) return Readings();
+    if (kick.is_gone(t)) return Readings();
     const Vector place = from_start() ? starts[corners * id[t] + k] : kick.nodes[t].at[k].position;
     if (!box.holds(to_space(place))) return Readings();
     return Readings(value(t, k), corners * id[t] + k);

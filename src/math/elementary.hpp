@@ -83,14 +83,23 @@ BR_HD inline R logarithm(const R& x) {
 /// ln(1 + x) - x, to rounding also where x is small; no number for x <= -1.
 ///
 /// x^2 (-1/2 + x/3 - x^2/4 ...): 0.05^13/15 < 1e-16, as 0.001^6/8
-BR_HD inline double log_less_linear(double x) {
-  if (!(abs(x) < 0.05)) return x > -1.0 ? logarithm(1.0 + x) - x : NAN;
-  constexpr double terms[] = {1.0 / 14, 1.0 / 13, 1.0 / 12, 1.0 / 11, 1.0 / 10, 1.0 / 9, 1.0 / 8,
-                              1.0 / 7,  1.0 / 6,  1.0 / 5,  1.0 / 4,  1.0 / 3,  1.0 / 2};
-  double series = 0.0;
-  for (int k = abs(x) < 1e-3 ? 7 : 0; k < 13; ++k)
-    series = series * x + (k % 2 == 0 ? -terms[k] : terms[k]);
-  return x * x * series;
+template <class R>
+BR_HD inline R log_less_linear(const R& x) {
+  constexpr double terms[] = {-1.0 / 14, 1.0 / 13, -1.0 / 12, 1.0 / 11, -1.0 / 10,
+                              1.0 / 9,   -1.0 / 8, 1.0 / 7,   -1.0 / 6, 1.0 / 5,
+                              -1.0 / 4,  1.0 / 3,  -1.0 / 2};
+  constexpr int first_of_small = 7, count = 13;
+  const auto near = abs(x) < 0.05, small = abs(x) < 1e-3;
+  R series = constant<R>(0.0);
+  if (any(!small)) {
+    for (int k = 0; k < first_of_small; ++k) series = series * x + terms[k];
+    series = select(small, constant<R>(0.0), series);
+  }
+  for (int k = first_of_small; k < count; ++k) series = series * x + terms[k];
+  const R of_near = x * x * series;
+  if (!any(!near)) return of_near;
+  const R of_far = select(x > -1.0, logarithm<R>(1.0 + x) - x, constant<R>(NAN));
+  return select(near, of_near, of_far);
 }
 
 /// Angle in [0, pi/4] whose tangent is x in [0, 1]. Error below 1e-15.

@@ -1,5 +1,6 @@
 #include "dem/stepping/kernel_lanes.hpp"
 
+#include "core/add_energies.hpp"
 #include "exec/whole_packs.hpp"
 
 namespace breccia::dem {
@@ -61,17 +62,8 @@ BR_EACH_ADDED_KERNEL(BR_INSTANTIATE)
 #undef BR_INSTANTIATE
 
 template <class Kernel>
-void add_energies([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end,
-                  Energies& sum) {
-#if defined(BR_WIDE_LANES)
-  for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
-    begin = lanes == Lanes::eight ? PacksAvx512::add(kernel, begin, end, sum)
-                                  : PacksAvx2::add(kernel, begin, end, sum);
-    if (end - begin < width) break;
-    for (const Index next = begin + width; begin < next; ++begin) kernel.add_to(sum, begin);
-  }
-#endif
-  for (; begin < end; ++begin) kernel.add_to(sum, begin);
+void add_energies(Lanes lanes, const Kernel& kernel, Index begin, Index end, Energies& sum) {
+  add_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end, sum);
 }
 #define BR_INSTANTIATE(Kernel) \
   template void add_energies(Lanes, const Kernel&, Index, Index, Energies&);

@@ -51,13 +51,7 @@ struct WholeJoints {
   template <class R>
   R elastic(Index i) const {
     Index at[4][width_of<R>];
-    for (Index k = 0; k < width_of<R>; ++k) {
-      const JointEnds& e = by.ends[i + k];
-      at[0][k] = e.a0;
-      at[1][k] = e.a1;
-      at[2][k] = e.b0;
-      at[3][k] = e.b1;
-    }
+    list_ends<R>(by.ends, i, at);
     R corner[4][2], bond[4], taken[2], offset[2] = {};
     for (int k = 0; k < 4; ++k) gather_records(by.nodes, indices<R>(at[k]), corner[k]);
     gather_records(by.bonds, load_indices<R>(by.law, i), bond);  // stiffness, f_t, c, friction

@@ -64,13 +64,7 @@ struct JointForces {
       if (stage[i + k] == JointStage::whole) loaded.stage = JointStage::whole;
     if (left<R>(loaded)) return;
     Index at[4][width_of<R>];
-    for (Index k = 0; k < width_of<R>; ++k) {
-      const JointEnds& e = ends[i + k];
-      at[0][k] = e.a0;
-      at[1][k] = e.a1;
-      at[2][k] = e.b0;
-      at[3][k] = e.b1;
-    }
+    list_ends<R>(ends, i, at);
     for (int k = 0; k < 4; ++k) loaded.end[k] = indices<R>(at[k]);
     loaded.law = load_indices_now<R>(law, i);
     if (graded.size > 0) load_start(i, loaded.start);

@@ -184,6 +184,19 @@ struct JointEnds {
   BR_HD static Index next_corner(Index edge) { return edge % 3 == 2 ? edge - 2 : edge + 1; }
 };
 
+/// Lists corners a0, a1, b0, b1 of a joint, or of it and its neighbours in a pack.
+template <class R>
+BR_HD inline void list_ends(const View<const JointEnds>& ends, Index i,
+                            Index (&at)[4][width_of<R>]) {
+  for (Index k = 0; k < width_of<R>; ++k) {
+    const JointEnds& e = ends[i + k];
+    at[0][k] = e.a0;
+    at[1][k] = e.a1;
+    at[2][k] = e.b0;
+    at[3][k] = e.b1;
+  }
+}
+
 /// How a joint is open: axes and relative displacements at its integration points.
 template <class R>
 struct JointOpening {

@@ -69,6 +69,16 @@ Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end)
   return moved;
 }
 
+[[gnu::flatten]] Index BR_PACKS::add(const TriangleShares& kernel, Index begin, Index end,
+                                     Energies& sum) {
+  Index t = begin;
+  if (t + width > end || !kernel.are_free<WidestPack>(t)) return t;
+  EnergiesOf<WidestPack> packs;
+  for (; t + width <= end && kernel.are_free<WidestPack>(t); t += width)
+    kernel.add_free<WidestPack>(packs, t);
+  add_packs<WidestPack>(sum, packs);
+  return t;
+}
 [[gnu::flatten]] Index BR_PACKS::add(const WholeJoints& joints, Index begin, Index end,
                                      ExactSum& elastic) {
   Index i = begin;

@@ -57,6 +57,7 @@ struct ElasticLaw {
   R bend{};            ///< q  [Pa]
   R planes{};          ///< tangent of the planes' angle  [-]
 
+  BR_HD auto is_bedded() const { return abs(tilt) + abs(bend) > 0.0; }
   /// Cauchy stress.  [Pa]
   BR_HD Sym2Of<R> stress(const Deformation<R>& d, const R& eta) const {
     const Mat2Of<R>& f = d.gradient;
@@ -65,7 +66,7 @@ struct ElasticLaw {
     const Mat2Of<R>& l = d.velocity_gradient;
     const Vec2Of<R> row_x{f.xx, f.xy}, row_y{f.yx, f.yy};
     Sym2Of<R> kept = preset;  // by the reference: S_0, and S of bedded rock
-    const auto bedded = abs(tilt) + abs(bend) > 0.0;
+    const auto bedded = is_bedded();
     if (any(bedded)) {
       const Sym2Of<R> more = answer_of_planes(f);
       kept = {select(bedded, kept.xx + more.xx, kept.xx),
@@ -87,8 +88,31 @@ struct ElasticLaw {
     const R square = planes * planes, over = 1.0 / (1.0 + square);
     return {(1.0 - square) * over, 2.0 * planes * over};
   }
+  /// Energy per reference area, with what it held at the start: S_0 : C^-1 S_0 / 2 by Hooke's law,
+  /// which makes it that of a rock without stress that was strained since. No number where the
+  /// triangle is turned inside out. By differences that vanish at rest, so that no rounding of
+  /// first order is left, whatever way the triangle has turned: tr C - 2 J = (F_xx - F_yy)^2 +
+  /// (F_xy + F_yx)^2, and J - 1 - ln J.  [J/m2 per unit thickness]
+  BR_HD R energy(const Deformation<R>& d) const {
+    const Mat2Of<R>& f = d.gradient;
+    const R stretched = f.xx - f.yy, sheared = f.xy + f.yx;
+    const R grown = d.jacobian - 1.0, bent = log_less_linear(grown);
+    const Sym2Of<R> strain{0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
+                           0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0),
+                           0.5 * (f.xx * f.xy + f.yx * f.yy)};
+    return 0.5 * shear * (stretched * stretched + sheared * sheared - 2.0 * bent) +
+           0.25 * lambda * (grown * grown - 2.0 * bent) + contract(preset, strain) +
+           energy_at_start() + energy_of_planes(f);
+  }
+  BR_HD R energy_at_start() const {
+    const R trace = preset.xx + preset.yy;
+    const R even =
+        0.25 / shear * (contract(preset, preset) - 0.5 * lambda / (lambda + shear) * trace * trace);
+    const auto bedded = is_bedded();
+    return any(bedded) ? select(bedded, bedded_at_start(), even) : even;
+  }
 
- protected:
+ private:
   /// tr E and D : E.
   BR_HD Vec2Of<R> strains_of_planes(const Mat2Of<R>& f, const Vec2Of<R>& twice) const {
     const R xx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
@@ -102,51 +126,24 @@ struct ElasticLaw {
     const R alike = tilt * e.y, turned = tilt * e.x + bend * e.y;
     return {alike + turned * twice.x, alike - turned * twice.x, turned * twice.y};
   }
-};
-
-/// A material's law, and its energy.
-struct ElasticTriangle : ElasticLaw<double> {
-  /// Energy per reference area, with what it held at the start: S_0 : C^-1 S_0 / 2 by Hooke's law,
-  /// which makes it that of a rock without stress that was strained since. No number where the
-  /// triangle is turned inside out. By differences that vanish at rest, so that no rounding of
-  /// first order is left, whatever way the triangle has turned: tr C - 2 J = (F_xx - F_yy)^2 +
-  /// (F_xy + F_yx)^2, and J - 1 - ln J.  [J/m2 per unit thickness]
-  BR_HD double energy(const Deformation<double>& d) const {
-    const Mat2& f = d.gradient;
-    const double stretched = f.xx - f.yy, sheared = f.xy + f.yx;
-    const double grown = d.jacobian - 1.0, bent = log_less_linear(grown);
-    const Sym2 strain{0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
-                      0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0), 0.5 * (f.xx * f.xy + f.yx * f.yy)};
-    return 0.5 * shear * (stretched * stretched + sheared * sheared - 2.0 * bent) +
-           0.25 * lambda * (grown * grown - 2.0 * bent) + contract(preset, strain) +
-           energy_at_start() + energy_of_planes(f);
-  }
-  BR_HD bool is_bedded() const { return abs(tilt) + abs(bend) > 0.0; }
-  BR_HD double energy_at_start() const {
-    if (is_bedded()) return bedded_at_start();
-    const double trace = preset.xx + preset.yy;
-    return 0.25 / shear *
-           (contract(preset, preset) - 0.5 * lambda / (lambda + shear) * trace * trace);
-  }
-
- private:
-  BR_HD double energy_of_planes(const Mat2& f) const {
-    const Vec2 e = strains_of_planes(f, twice_the_angle());
+  BR_HD R energy_of_planes(const Mat2Of<R>& f) const {
+    const Vec2Of<R> e = strains_of_planes(f, twice_the_angle());
     return (tilt * e.x + 0.5 * bend * e.y) * e.y;
   }
-  BR_HD double bedded_at_start() const {
-    const Vec2 twice = twice_the_angle();
-    const double mean = 0.5 * (preset.xx + preset.yy), half = 0.5 * (preset.xx - preset.yy);
-    const double more = twice.x * half + twice.y * preset.xy;
-    const double along = mean + more, across = mean - more;
-    const double slid = twice.x * preset.xy - twice.y * half;
-    const double c12 = lambda - bend, c11 = lambda + 2.0 * shear + 2.0 * tilt + bend,
-                 c22 = lambda + 2.0 * shear - 2.0 * tilt + bend;
+  BR_HD R bedded_at_start() const {
+    const Vec2Of<R> twice = twice_the_angle();
+    const R mean = 0.5 * (preset.xx + preset.yy), half = 0.5 * (preset.xx - preset.yy);
+    const R more = twice.x * half + twice.y * preset.xy;
+    const R along = mean + more, across = mean - more;
+    const R slid = twice.x * preset.xy - twice.y * half;
+    const R c12 = lambda - bend, c11 = lambda + 2.0 * shear + 2.0 * tilt + bend,
+            c22 = lambda + 2.0 * shear - 2.0 * tilt + bend;
     return 0.5 * ((c22 * along * along - 2.0 * c12 * along * across + c11 * across * across) /
                       (c11 * c22 - c12 * c12) +
                   slid * slid / shear);
   }
 };
+using ElasticTriangle = ElasticLaw<double>;  ///< of a material
 
 /// Forces that the stress of a triangle puts on its corners: sigma n_i / 2 with the outward vector
 /// n_i of the opposite edge; they sum to zero. [N per unit thickness]

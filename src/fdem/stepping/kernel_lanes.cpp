@@ -1,5 +1,6 @@
 #include "fdem/stepping/kernel_lanes.hpp"
 
+#include "core/add_energies.hpp"
 #include "exec/whole_packs.hpp"
 #include "fdem_shared/noting_move.hpp"
 
@@ -125,6 +126,10 @@ Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Inde
   return while_whole(lanes, kernel, begin, end);
 }
 
+void add_energies(Lanes lanes, const TriangleShares& kernel, Index begin, Index end,
+                  Energies& sum) {
+  add_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end, sum);
+}
 Index StoredByJoints::add_whole([[maybe_unused]] ExactSum& elastic,
                                 [[maybe_unused]] const View<const JointStage>& stage,
                                 [[maybe_unused]] const View<const JointWork>& work, Index begin,

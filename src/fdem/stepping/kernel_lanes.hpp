@@ -5,6 +5,7 @@
 #include "fdem/contact/couples.hpp"
 #include "fdem/joints/joint_energies.hpp"
 #include "fdem/joints/joint_lanes.hpp"
+#include "fdem/triangles/triangle_energies.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
 
 namespace breccia::fdem {
@@ -51,6 +52,7 @@ struct PacksAvx2 {
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+  static Index add(const TriangleShares& kernel, Index begin, Index end, Energies& sum);
   static Index add(const WholeJoints& joints, Index begin, Index end, ExactSum& elastic);
 };
 struct PacksAvx512 {
@@ -63,6 +65,7 @@ struct PacksAvx512 {
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+  static Index add(const TriangleShares& kernel, Index begin, Index end, Energies& sum);
   static Index add(const WholeJoints& joints, Index begin, Index end, ExactSum& elastic);
 };
 

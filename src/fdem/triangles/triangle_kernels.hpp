@@ -19,19 +19,6 @@ struct EdgeJoints {
 inline constexpr Index edge_free = -1;    ///< on the border, or no law joins the two materials
 inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: no joint, no contact
 
-/// Corners of a triangle by component.
-template <class R>
-struct CornersOf {
-  Vec2Of<R> x[3], v[3];
-
-  BR_HD explicit CornersOf(const R (&c)[12]) {
-    for (int k = 0; k < 3; ++k) {
-      x[k] = {c[4 * k], c[4 * k + 1]};
-      v[k] = {c[4 * k + 2], c[4 * k + 3]};
-    }
-  }
-};
-
 /// Internal force of the triangle, plus its joints by slot, plus its couples by the partners'
 /// global ids: no order of memory, threads or ranks changes a bit.
 /// @tparam Number  what forces of joints and couples are stored in

@@ -73,6 +73,19 @@ BR_HD inline View<const NodeState> by_number(const View<const TriangleNodes>& no
   return view;
 }
 
+/// Corners of a triangle by component.
+template <class R>
+struct CornersOf {
+  Vec2Of<R> x[3], v[3];
+
+  BR_HD explicit CornersOf(const R (&c)[12]) {
+    for (int k = 0; k < 3; ++k) {
+      x[k] = {c[4 * k], c[4 * k + 1]};
+      v[k] = {c[4 * k + 2], c[4 * k + 3]};
+    }
+  }
+};
+
 BR_HD inline void split(const TriangleNodes& nodes, Vec2 (&x)[3], Vec2 (&v)[3]) {
   for (int k = 0; k < 3; ++k) {
     x[k] = nodes.at[k].position;
