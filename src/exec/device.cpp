@@ -6,6 +6,8 @@
 #include "exec/multiprocessors.hpp"
 
 #if defined(BR_CUDA)
+#include <future>
+
 #include "exec/cuda.hpp"
 
 namespace breccia {
@@ -20,7 +22,15 @@ namespace {
 int used_device = -1;  ///< none yet
 thread_local bool on_second_stream = false;
 
+/// The number of the GPU that another thread makes ready. In a function, so that it ends before
+/// CUDA does.
+std::future<int>& coming_device() {
+  static std::future<int> coming;
+  return coming;
+}
+
 cudaStream_t made_stream() {
+  await_device();
   cudaStream_t made = nullptr;
   check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
   return made;
@@ -32,7 +42,33 @@ std::string why_no_gpu(cudaError_t result) {
   const bool none = cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0;
   return none ? "this machine has no NVIDIA driver" : cudaGetErrorString(result);
 }
+
+/// @returns the number of the GPU
+int make_ready(int number, bool in_turn) {
+  int count = 0;
+  if (const cudaError_t result = cudaGetDeviceCount(&count); result != cudaSuccess)
+    throw DeviceError("no GPU can be used: " + why_no_gpu(result) +
+                      "; nothing was run\n  use --device cpu, or look at nvidia-smi");
+  if (in_turn && count > 0) number %= count;
+  if (number < 0 || number >= count)
+    throw DeviceError("there is no GPU " + std::to_string(number) + "; this machine has " +
+                      std::to_string(count) + ", from 0; nothing was run");
+  check_device(cudaSetDevice(number), "choosing it");
+  // Freed memory stays with the process: searches take and give arrays every few steps.
+  cudaMemPool_t pool = nullptr;
+  check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
+  std::uint64_t kept = ~std::uint64_t{0};
+  check_device(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept),
+               "setting its memory pool up");
+  return number;
+}
 }  // namespace
+
+void await_device() {
+  if (!coming_device().valid()) return;
+  used_device = coming_device().get();
+  check_device(cudaSetDevice(used_device), "choosing it");  // each thread has to
+}
 
 cudaStream_t device_stream() {
   static const cudaStream_t run = made_stream();
@@ -68,28 +104,19 @@ bool launches_overlap() {
 }
 
 void use_device(int number) {
-  int count = 0;
-  if (const cudaError_t result = cudaGetDeviceCount(&count); result != cudaSuccess)
-    throw DeviceError("no GPU can be used: " + why_no_gpu(result) +
-                      "; nothing was run\n  use --device cpu, or look at nvidia-smi");
-  if (number < 0 || number >= count)
-    throw DeviceError("there is no GPU " + std::to_string(number) + "; this machine has " +
-                      std::to_string(count) + ", from 0; nothing was run");
-  check_device(cudaSetDevice(number), "choosing it");
-  used_device = number;
-  // Freed memory stays with the process: searches take and give arrays every few steps.
-  cudaMemPool_t pool = nullptr;
-  check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
-  std::uint64_t kept = ~std::uint64_t{0};
-  check_device(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept),
-               "setting its memory pool up");
+  coming_device() = std::async(std::launch::async, make_ready, number, false);
+}
+void use_device_in_turn(int turn) {
+  coming_device() = std::async(std::launch::async, make_ready, turn, true);
 }
 
 int device_in_use() {
+  await_device();
   return used_device;
 }
 
 DeviceInfo device_info() {
+  await_device();
   int number = 0;
   check_device(cudaGetDevice(&number), "asking for its number");
   cudaDeviceProp properties{};
@@ -110,6 +137,7 @@ void return_free_memory() {
 }
 
 Multiprocessors multiprocessors() {
+  await_device();
   int number = 0, count = 0, memory = 0, resident = 0;
   check_device(cudaGetDevice(&number), "asking for its number");
   const auto ask = [&](cudaDeviceAttr what, int& answer) {
@@ -147,6 +175,10 @@ int device_count() {
 void use_device(int) {
   refuse();
 }
+void use_device_in_turn(int) {
+  refuse();
+}
+void await_device() {}
 int device_in_use() {
   return -1;
 }

@@ -16,9 +16,13 @@ struct DeviceInfo {
 /// GPUs that this process can use; 0 without CUDA.
 int device_count();
 
-/// Computes on GPU `number` from now on. @throws DeviceError if this build has no CUDA, or if there
-/// is no such GPU (tells how many there are)
+/// Computes on GPU `number` from now on. A driver takes 0.2 s to get ready, in which this process
+/// goes on. @throws DeviceError if this build has no CUDA
 void use_device(int number);
+/// The same for process `turn` of this machine, whose GPUs are used in turn.
+void use_device_in_turn(int turn);
+/// Waits until it is ready. @throws DeviceError if there is no such GPU (tells how many there are)
+void await_device();
 
 /// Number of the GPU that this process computes on; below 0: none.
 int device_in_use();

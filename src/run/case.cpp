@@ -7,6 +7,7 @@
 
 #include "domain/domain.hpp"
 #include "domain/mpi_ranks.hpp"
+#include "exec/device.hpp"
 #include "exec/error.hpp"
 #include "io/case/case_source.hpp"
 #include "io/case/problems.hpp"
@@ -381,6 +382,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
                                 ranks_on_this_machine(ranks));
         });
         collective_try(ranks, [&] {
+          if (!read.model && exec.space == Space::cuda) await_device();  // building takes longer
           model = located(read, [&] { return &model_of(read, config, exec, built); });
           if (exec.space == Space::cuda)
             plan_device(device_bytes(*model) / (ranks == nullptr ? 1 : ranks->size()),

@@ -42,16 +42,18 @@ Exec exec_on(const std::string& wanted, int threads, Communicator* ranks) {
         fmt::format("device {}: there are cpu, cuda and cuda:N, and +tiles or +launches behind "
                     "those with a GPU",
                     wanted));
-  int number = 0;
-  if (const std::size_t colon = device.find(':'); colon != std::string::npos) {
-    const char* const end = device.data() + device.size();
-    const auto [stop, error] = std::from_chars(device.data() + colon + 1, end, number);
-    if (error != std::errc{} || stop != end || number < 0)
-      throw InputError(fmt::format("device {}: N is the number of a GPU, from 0", wanted));
-  } else if (const int there = device_count(); there > 0)  // a GPU each, in turn
-    number = number_on_this_machine(ranks) % there;
-  use_device(number);
   exec.space = Space::cuda;
+  const std::size_t colon = device.find(':');
+  if (colon == std::string::npos) {
+    use_device_in_turn(number_on_this_machine(ranks));
+    return exec;
+  }
+  int number = 0;
+  const char* const end = device.data() + device.size();
+  const auto [stop, error] = std::from_chars(device.data() + colon + 1, end, number);
+  if (error != std::errc{} || stop != end || number < 0)
+    throw InputError(fmt::format("device {}: N is the number of a GPU, from 0", wanted));
+  use_device(number);
   return exec;
 }
 
