@@ -11,6 +11,9 @@ namespace breccia {
 /// @tparam Sum  ExactSum, or PackSum of items side by side
 template <class Sum>
 struct EnergiesBy {
+  using Part = Sum;
+  static constexpr int parts = 10;
+
   Sum kinetic, elastic;
   Sum fracture;  ///< where modes are told apart: by opening
   Sum sliding;   ///< fracture by sliding

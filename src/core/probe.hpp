@@ -1,6 +1,7 @@
 #pragma once
 // Readings of probes for both methods: sum and range of a quantity over items.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,9 @@ BR_HD inline Readings operator+(Readings a, const Readings& b) {
   a.weight.add(b.weight);
   return a;
 }
+
+/// What a probe reads of the present state, when it is asked for: until then the host can go on.
+using ReadingsLater = std::function<Readings()>;
 
 struct ProbeConfig;
 /// Problems of a probe's quantity and of how it is read, as sentences.

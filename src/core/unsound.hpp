@@ -1,6 +1,7 @@
 #pragma once
 // Names of elements that something is wrong with, or may be.
 
+#include <functional>
 #include <string>
 
 #include "exec/types.hpp"
@@ -13,6 +14,10 @@ struct Unsound {
   GlobalId id = none;
   std::string text;
 };
+
+/// The first unsound element of the present state, when it is asked for: until then the host can go
+/// on, but not the state.
+using UnsoundLater = std::function<Unsound()>;
 
 /// A speed and whose it is.
 struct Speed {

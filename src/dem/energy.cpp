@@ -109,12 +109,12 @@ auto contacts_part(const World& w, const List& c, const Buffer<ContactPair>& pai
 
 }  // namespace
 
-Energies held(const World& w) {
+std::function<Energies()> held_later(const World& w) {
   const StageTime timed(w.exec, "ledger");
   const Elements& e = w.elements;
   FoldSum<Energies> all(w.exec);
   Buffer<Wall> walls(w.exec.space);
-  copy_to(walls, w.walls);
+  if (!w.walls.empty()) copy_to(walls, w.walls);
   const bool falls = dot(w.given->gravity, w.given->gravity) > 0.0;
   const auto own = [&w](const auto& kernel) { return of_owned(w.domain, Energies{}, kernel); };
   const auto others = part(
@@ -139,7 +139,8 @@ Energies held(const World& w) {
       all.add(g.end - g.begin, energies_of<Number>(w, w.parallel, g));
     for (const auto& g : w.ldpm.groups) all.add(g.end - g.begin, energies_of<Number>(w, w.ldpm, g));
   });
-  return w.free_walls.empty() ? all.sum() : all.sum() + held_by_free_walls(w);
+  if (w.free_walls.empty()) return all.sum_later();
+  return [others = all.sum_later(), walls = held_by_free_walls(w)] { return others() + walls; };
 }
 
 EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {

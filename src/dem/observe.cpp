@@ -78,6 +78,10 @@ struct AddDamage {
   View<std::uint64_t> lost;
   bool alone;  ///< whether one thread takes all links
 
+  template <class Law>
+  AddDamage to(const LinkSet<Law>& set) const {
+    return {set.a.view(), set.b.view(), lost, alone};
+  }
   BR_HD void operator()(Index i, double damage) const {
     const auto parts =
         static_cast<std::uint64_t>(static_cast<double>(parts_of_a_link) * damage + 0.5);
@@ -169,13 +173,11 @@ Fastest fastest(const World& w) {
   return {speed, text};
 }
 
-Unsound find_unsound(const World& w) {
-  const Elements& e = w.elements;
-  const GlobalId bad = fold_owned(
-      w.exec, w.domain, e.size(), Unsound::none,
-      FindUnsound{w.last_dt, w.travel.drift.velocity, e.id.view(), e.state.view()}, Least{});
-  if (bad == Unsound::none) return {};
-  const Elements host = host_copy(e);
+namespace {
+
+/// An unsound element, and what to tell of it.
+Unsound told_of(const World& w, GlobalId bad) {
+  const Elements host = host_copy(w.elements);
   const auto ids = host.id.host();
   const auto i = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
   const std::string group = w.given->sets.at(static_cast<std::size_t>(host.group.data()[i])).name;
@@ -190,6 +192,19 @@ Unsound find_unsound(const World& w) {
   return {bad, message};
 }
 
+}  // namespace
+
+UnsoundLater find_unsound_later(const World& w) {
+  const Elements& e = w.elements;
+  const auto found = fold_owned_later(
+      w.exec, w.domain, e.size(), Unsound::none,
+      FindUnsound{w.last_dt, w.travel.drift.velocity, e.id.view(), e.state.view()}, Least{});
+  return [&w, found] {
+    const GlobalId bad = found.value();
+    return bad == Unsound::none ? Unsound{} : told_of(w, bad);
+  };
+}
+
 MotionNow motion_now(const World& w) {
   const Index count = w.elements.size();
   Buffer<Vec3> velocity(w.exec.space, count), spin(w.exec.space, count);
@@ -200,27 +215,51 @@ MotionNow motion_now(const World& w) {
   return now;
 }
 
+namespace {
+
+template <class Number>
+auto damage_kernel(const AddDamage& add, const ConcreteLinks& set,
+                   const LinkGroup<ConcreteLink>& g) {
+  return ConcreteDamage<Number>{add,
+                                g.law,
+                                g.begin,
+                                set.kept.template as<Number>().opening.view(),
+                                set.length.view(),
+                                set.stiffness.view(),
+                                set.area.view(),
+                                set.rate.view()};
+}
+template <class Number, class Law, class... Rest>
+auto damage_part(const AddDamage& add, const LinkSet<Law>& set, const Parts<Rest...>& rest) {
+  const auto is_broken = set.template broken<Number>();
+  return part(set.size(),
+              BrokenDamage<std::remove_const_t<decltype(is_broken)>>{add.to(set), is_broken}, rest);
+}
+
+}  // namespace
+
 Buffer<double> damage_of(const World& w) {
   const Index count = w.elements.size();
   Buffer<std::uint64_t> lost(w.exec.space, count);
   Buffer<double> damage(w.exec.space, count);
-  w.each_set([&](const auto& set) {
-    const bool alone = w.exec.space != Space::cuda && w.exec.threads <= 1;
-    const AddDamage add{set.a.view(), set.b.view(), lost.view(), alone};
-    with_number(w.exec.precision, [&](auto number) {
-      using Number = decltype(number);
-      if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {
-        for (const auto& g : set.groups)
-          for_each(w.exec, g.end - g.begin,
-                   ConcreteDamage<Number>{
-                       add, g.law, g.begin, set.kept.template as<Number>().opening.view(),
-                       set.length.view(), set.stiffness.view(), set.area.view(), set.rate.view()});
-      } else {
-        const auto is_broken = set.template broken<Number>();
-        for_each(w.exec, set.size(),
-                 BrokenDamage<std::remove_const_t<decltype(is_broken)>>{add, is_broken});
-      }
-    });
+  const bool alone = w.exec.space != Space::cuda && w.exec.threads <= 1;
+  const AddDamage add{{}, {}, lost.view(), alone};
+  with_number(w.exec.precision, [&](auto number) {
+    using Number = decltype(number);
+    const auto& groups = w.concrete.groups;
+    const LinkGroup<ConcreteLink> none{}, &first = groups.empty() ? none : groups.front();
+    for_each_of(
+        w.exec,
+        part(first.end - first.begin, damage_kernel<Number>(add.to(w.concrete), w.concrete, first),
+             damage_part<Number>(
+                 add, w.steel,
+                 damage_part<Number>(
+                     add, w.interface,
+                     damage_part<Number>(add, w.parallel,
+                                         damage_part<Number>(add, w.ldpm, Parts<>{}))))));
+    for (std::size_t k = 1; k < groups.size(); ++k)
+      for_each(w.exec, groups[k].end - groups[k].begin,
+               damage_kernel<Number>(add.to(w.concrete), w.concrete, groups[k]));
   });
   for_each(w.exec, count, Damage{std::as_const(lost).view(), damage.view()});
   return damage;
@@ -247,8 +286,7 @@ void note_breaks(World& w) {
     const auto all = breaks_part<Number>(
         w.concrete, w.time,
         breaks_part<Number>(w.steel, w.time, breaks_part<Number>(w.interface, w.time, further)));
-    if (w.exec.space == Space::cuda) return for_each_part(w.exec, all);
-    all.each([&](Index count, const auto& kernel) { for_each(w.exec, count, kernel); });
+    for_each_of(w.exec, all);
   });
 }
 

@@ -16,7 +16,10 @@ std::uint64_t state_hash(const World& w);
 
 /// The first element of its own whose state is not finite or that moves more than its radius in a
 /// step.
-Unsound find_unsound(const World& w);
+UnsoundLater find_unsound_later(const World& w);
+inline Unsound find_unsound(const World& w) {
+  return find_unsound_later(w)();
+}
 /// The element of its own that moves fastest: where energy is lost, it may be the one to look at.
 Fastest fastest(const World& w);
 
@@ -31,7 +34,11 @@ struct MotionNow {
 };
 MotionNow motion_now(const World& w);
 
-double probe(const World& w, const ProbeConfig& probe);
+/// A probe's reading, when it is asked for: until then the host can go on.
+std::function<double()> probe_later(const World& w, const ProbeConfig& probe);
+inline double probe(const World& w, const ProbeConfig& probe) {
+  return probe_later(w, probe)();
+}
 /// A probe's reading of a rank's own elements; the sum over all ranks is the reading of the
 /// whole.
 Readings read_own(World& part, const ProbeConfig& probe);

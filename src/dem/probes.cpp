@@ -329,20 +329,26 @@ StrainFit fit_of(const World& w, const ProbeConfig& p) {
   return {};
 }
 
-Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
+/// Readings that are there already.
+ReadingsLater known(const Readings& readings) {
+  return [readings] { return readings; };
+}
+
+ReadingsLater read(const World& w, const ProbeConfig& p, View<const Index> members) {
   const Elements& e = w.elements;
   const Quantity quantity = quantity_named(p.quantity).quantity;
-  if (quantity.kind == Quantity::Kind::stress) return read_stress(w, p);
+  if (quantity.kind == Quantity::Kind::stress) return known(read_stress(w, p));
   if (quantity.kind == Quantity::Kind::broken || quantity.kind == Quantity::Kind::opening ||
       quantity.kind == Quantity::Kind::axial_force)
-    return read_links(w, p, members, quantity.kind);
+    return known(read_links(w, p, members, quantity.kind));
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
-  return fold_owned(
+  const auto readings = fold_owned_later(
       w.exec, w.domain, p.on.empty() ? e.size() : members.size, Readings{},
       ReadProbe{quantity, members, e.id.view(), kick(w), std::as_const(lost).view(),
                 w.given->starts.view(), ReadBox(p.min, p.max), point_of(p.about), fit_of(w, p)},
       Sum{}, MemberElement<>{members});
+  return [readings] { return readings.value(); };
 }
 
 /// A component of the force on a wall, or of its torque about a point.
@@ -397,31 +403,36 @@ double motion_of_wall(const World& w, const Quantity& quantity, std::size_t wall
 
 /// A wall's place and velocity, which rank 0 knows as well as all, and what this rank's elements
 /// push it with.
-Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
+ReadingsLater read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
   const Quantity quantity = quantity_named(p.quantity).quantity;
   const bool first = is_first(w);
   const Wall& own = w.walls[wall];
   const bool turns = quantity.kind == Quantity::Kind::torque;
   if (quantity.kind != Quantity::Kind::force && !turns) {
-    return first ? Readings(motion_of_wall(w, quantity, wall, point_of(p.about)), 0) : Readings();
+    return known(first ? Readings(motion_of_wall(w, quantity, wall, point_of(p.about)), 0)
+                       : Readings());
   }
   Readings read;
   if (first) read = Readings(0.0, 0);
-  if (wall + 1 >= w.wall_begin.size()) return read;  // no search yet
+  if (wall + 1 >= w.wall_begin.size()) return known(read);  // no search yet
   const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
-  read.sum.add(fold_owned(
+  const auto push = fold_owned_later(
       w.exec, w.domain, end - begin, ExactSum(),
       PushOnWall{begin, quantity.axis, turns, own, point_of(p.about), w.elements.state.view(),
                  w.wall_contacts.pairs.a.view(), w.wall_contacts.history.on_wall.view(),
                  w.wall_contacts.history.place.view()},
-      Sum{}, ListedElement<>{w.wall_contacts.pairs.a.view(), begin}));
-  return read;
+      Sum{}, ListedElement<>{w.wall_contacts.pairs.a.view(), begin});
+  return [read, push]() mutable {
+    read.sum.add(push.value());
+    return read;
+  };
 }
 
 }  // namespace
 
-double probe(const World& w, const ProbeConfig& p) {
-  if (const auto wall = wall_of(w, p)) return read_wall(w, p, *wall).sum.value();
+std::function<double()> probe_later(const World& w, const ProbeConfig& p) {
+  if (const auto wall = wall_of(w, p))
+    return [read = read_wall(w, p, *wall)] { return read().sum.value(); };
   View<const Index> members{};
   if (!p.on.empty()) {
     const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
@@ -430,17 +441,17 @@ double probe(const World& w, const ProbeConfig& p) {
       throw InputError("probe " + p.name + ": there is no group " + p.on);
     members = set->members.view();
   }
-  return read(w, p, members).reduced(p.reduce);
+  return [read = read(w, p, members), how = p.reduce] { return read().reduced(how); };
 }
 
 Readings read_own(World& part, const ProbeConfig& p) {
-  if (const auto wall = wall_of(part, p)) return read_wall(part, p, *wall);
+  if (const auto wall = wall_of(part, p)) return read_wall(part, p, *wall)();
   const auto set = std::find_if(part.given->sets.begin(), part.given->sets.end(),
                                 [&](const ElementSet& s) { return s.name == p.on; });
-  if (set == part.given->sets.end()) return read(part, p, {});
+  if (set == part.given->sets.end()) return read(part, p, {})();
   SetHere& here = part.sets_here[static_cast<std::size_t>(set - part.given->sets.begin())];
   keep_here(here, part.domain, part.elements.id, set->members.host(), 1, part.exec.space);
-  return read(part, p, std::as_const(here.places).view());
+  return read(part, p, std::as_const(here.places).view())();
 }
 
 }  // namespace breccia::dem

@@ -111,11 +111,18 @@ void for_each_owned(const Exec& exec, const Domain& domain, Index count, const K
   for_each(exec, count, ForOwned<Kernel, ElementOf>{domain.owned_view(), element_of, kernel});
 }
 
+/// fold_later() over the items whose elements this rank owns.
+template <class Value, class Kernel, class Combine, class ElementOf = ItemItself>
+Later<Value> fold_owned_later(const Exec& exec, const Domain& domain, Index count,
+                              const Value& neutral, const Kernel& kernel, const Combine& combine,
+                              const ElementOf& element_of = {}) {
+  return fold_later(exec, count, neutral, of_owned(domain, neutral, kernel, element_of), combine);
+}
 /// fold() over the items whose elements this rank owns.
 template <class Value, class Kernel, class Combine, class ElementOf = ItemItself>
 Value fold_owned(const Exec& exec, const Domain& domain, Index count, const Value& neutral,
                  const Kernel& kernel, const Combine& combine, const ElementOf& element_of = {}) {
-  return fold(exec, count, neutral, of_owned(domain, neutral, kernel, element_of), combine);
+  return fold_owned_later(exec, domain, count, neutral, kernel, combine, element_of).value();
 }
 
 }  // namespace loops

@@ -1,6 +1,8 @@
 #pragma once
 // The sum of what several kernels find: on a device a launch for each, and one look at the end.
 
+#include <functional>
+
 #include "exec/for_each.hpp"
 
 namespace breccia {
@@ -9,14 +11,6 @@ inline namespace host_loops {
 #else
 inline namespace loops {
 #endif
-
-/// Sums that the blocks of launches found.
-template <class Value>
-struct FoundByBlocks {
-  static constexpr const char* name = "exec.fold_sum";
-  View<const Value> found;
-  BR_HD Value operator()(Index block) const { return found[block]; }
-};
 
 /// Blocks of each part of a launch that sums what the parts' items have.
 inline Index blocks_to_fold(const Parts<>&, Index) {
@@ -37,7 +31,7 @@ __device__ void fold_part(const Parts<First, Rest...>& parts, Index block, Index
   if (block >= blocks) return fold_part(parts.rest, block - blocks, most, value);
   for (Index i = block * block_size + static_cast<Index>(threadIdx.x); i < parts.count;
        i += blocks * block_size)
-    value = value + item_value(Value{}, parts.kernel, i);
+    add_item(value, parts.kernel, i, Sum{});
 }
 /// fold_blocks() of several kernels.
 template <class Value, class All>
@@ -48,10 +42,7 @@ __global__ void __launch_bounds__(block_size)
   auto* shared = reinterpret_cast<Value*>(memory);
   shared[threadIdx.x] = Value{};  // not in registers: as in fold_blocks()
   fold_part(all, static_cast<Index>(blockIdx.x), most, shared[threadIdx.x]);
-  for (unsigned half = block_size / 2; half > 0; half /= 2) {
-    __syncthreads();
-    if (threadIdx.x < half) shared[threadIdx.x] = shared[threadIdx.x] + shared[threadIdx.x + half];
-  }
+  combine_block(Sum{}, shared);
   if (threadIdx.x == 0) partial[blockIdx.x] = shared[0];
 }
 #endif
@@ -60,6 +51,8 @@ __global__ void __launch_bounds__(block_size)
 template <class Value>
 class FoldSum {
  public:
+  static constexpr const char* name = "exec.fold_sum";
+
   explicit FoldSum(const Exec& exec) : exec_(exec), partial_(exec.space) {}
 
   template <class Kernel>
@@ -69,7 +62,7 @@ class FoldSum {
     if (exec_.space == Space::cuda) {
       const Index blocks = std::min((count + block_size - 1) / block_size, most_blocks);
       if (used_ + blocks > room) whole_ = sum();
-      partial_.reserve(room + 1);
+      partial_.reserve(room);
       launch(kernel, fold_blocks<Value, Kernel, Sum>, blocks, block_size, count, Value{}, kernel,
              Sum{}, partial_.data() + used_);
       used_ += blocks;
@@ -88,7 +81,7 @@ class FoldSum {
       if (blocks == 0) return;
       static_assert(sizeof...(Kernels) * most_blocks <= room);
       if (used_ + blocks > room) whole_ = sum();
-      partial_.reserve(room + 1);
+      partial_.reserve(room);
       launch(parts, fold_parts<Value, Parts<Kernels...>>, blocks, block_size, parts, most_blocks,
              partial_.data() + used_);
       used_ += blocks;
@@ -98,22 +91,22 @@ class FoldSum {
     parts.each([&](Index count, const auto& kernel) { add(count, kernel); });
   }
 
-  /// Of all kernels so far.
-  Value sum() {
+  /// Of all kernels so far, when it is asked for: until then the host can go on.
+  std::function<Value()> sum_later() {
 #if defined(__CUDACC__)
     if (used_ > 0) {
-      FoundByBlocks<Value> all;
-      all.found.data = partial_.data();
-      all.found.size = used_;
-      launch(all, fold_blocks<Value, FoundByBlocks<Value>, Sum>, 1, block_size, used_, Value{}, all,
-             Sum{}, partial_.data() + room);
-      Value more;
-      copy_bytes(&more, Space::host, partial_.data() + room, Space::cuda, sizeof more);
-      whole_ = whole_ + more;
+      const Look look = next_look(0);
+      launch(*this, tell_found<Value, Sum>, 1, block_size, partial_.data(), used_, Value{}, Sum{},
+             look);
       used_ = 0;
+      return [whole = whole_, more = Later<Value>(Value{}, look)] { return whole + more.value(); };
     }
 #endif
-    return whole_;
+    return [whole = whole_] { return whole; };
+  }
+  /// Of all kernels so far.
+  Value sum() {
+    return sum_later()();
   }
 
  private:
@@ -121,7 +114,7 @@ class FoldSum {
 
   const Exec& exec_;
   Value whole_{};
-  Buffer<Value> partial_;  ///< of each block of launches so far; the last place is for their sum
+  Buffer<Value> partial_;  ///< of each block of launches so far
   Index used_ = 0;
 };
 

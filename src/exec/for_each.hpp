@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "exec/buffer.hpp"
@@ -93,6 +94,13 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
   }
 }
 
+/// Several loops, one after the other or, on a device, side by side in one launch.
+template <class... Kernels>
+void for_each_of(const Exec& exec, const Parts<Kernels...>& parts) {
+  if (exec.space == Space::cuda) return for_each_part(exec, parts);
+  parts.each([&](Index count, const auto& kernel) { for_each(exec, count, kernel); });
+}
+
 /// run(begin, end) for runs of `grain` items that make up [0, count), on the host: for kernels that
 /// take several items at once.
 template <class Run>
@@ -130,27 +138,52 @@ inline void fold_items(Value& value, const Kernel& kernel, Index begin, Index en
     for (Index i = begin; i < end; ++i) fold_item(value, kernel, i, combine);
 }
 
+/// A value that a launch finds while the host goes on; on a host it is there already.
+template <class Value>
+class Later {
+ public:
+  explicit Later(const Value& value) : value_(value) {}
+#if defined(__CUDACC__)
+  Later(const Value& otherwise, const Look& look) : value_(otherwise), look_(look) {}
+#endif
+  /// Waits for it. Of a stream at most `looks_on_their_way` values may be waited for at a time.
+  Value value() const {
+#if defined(__CUDACC__)
+    if (look_) {
+      wait_for(*look_);
+      Value value = value_;
+      std::memcpy(static_cast<void*>(&value), look_->told, sizeof value);
+      return value;
+    }
+#endif
+    return value_;
+  }
+
+ private:
+  Value value_;
+#if defined(__CUDACC__)
+  std::optional<Look> look_;
+#endif
+};
+
 /// neutral, kernel(0), kernel(1), ... combined into one value, on the host in fixed chunks of
 /// `fold_chunk`. The combination must not depend on order (least, largest, sums of whole numbers,
 /// ExactSum), so that threads and devices all give the same bits.
 template <class Value, class Kernel, class Combine>
-Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
-           const Combine& combine) {
+Later<Value> fold_later(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
+                        const Combine& combine) {
   BR_REFUSE_LOOP(Kernel);
   struct Partial {  // by itself in memory: std::vector<bool> would share words among threads
     Value value;
   };
 #if defined(__CUDACC__)
   if (exec.space == Space::cuda) {
-    if (count <= 0) return neutral;
+    if (count <= 0) return Later<Value>(neutral);
     const Index blocks = std::min((count + block_size - 1) / block_size, Index{528});
     const Look look = next_look(static_cast<std::size_t>(blocks) * sizeof(Value));
     launch(kernel, fold_and_tell<Value, Kernel, Combine>, blocks, block_size, count, neutral,
            kernel, combine, look);
-    wait_for(look);
-    Value value = neutral;
-    std::memcpy(static_cast<void*>(&value), look.told, sizeof value);
-    return value;
+    return {neutral, look};
   }
 #endif
   BR_ASSERT(exec.space != Space::cuda);
@@ -171,7 +204,12 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
   }
   Value value = neutral;
   for (const Partial& part : partial) value = combine(value, part.value);
-  return value;
+  return Later<Value>(value);
+}
+template <class Value, class Kernel, class Combine>
+Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
+           const Combine& combine) {
+  return fold_later(exec, count, neutral, kernel, combine).value();
 }
 
 }  // namespace loops

@@ -182,15 +182,65 @@ __global__ void __launch_bounds__(threads) launch_and_note(Index count, Kernel k
   if (threadIdx.x == 0) note(least);
 }
 
-/// The value of one item of a fold.
-template <class Value, class Kernel>
-__device__ Value item_value(const Value& neutral, const Kernel& kernel, Index i) {
-  if constexpr (requires(Value & value) { kernel.add_to(value, i); }) {
-    Value value = neutral;
+/// One item more of a fold: as fold_item() of the host, in place.
+template <class Value, class Kernel, class Combine>
+__device__ void add_item(Value& value, const Kernel& kernel, Index i, const Combine& combine) {
+  if constexpr (requires { kernel.add_to(value, i); })
     kernel.add_to(value, i);
-    return value;
+  else
+    value = combine(value, kernel(i));
+}
+
+/// Whether values are sums of several kinds, one after the other in memory, that combine one by
+/// one: `Value::Part`, `Value::parts` of them.
+template <class Value>
+concept MadeOfParts = requires {
+  typename Value::Part;
+  requires sizeof(Value) == Value::parts * sizeof(typename Value::Part);
+};
+
+/// Combines parts that lie at all[k * parts] for k < count: a thread takes those of one kind of
+/// every n-th value, then a thread each kind. The value comes to lie in `shared`.
+template <class Value, class Combine>
+__device__ void combine_parts(const typename Value::Part* all, Index count, const Combine& combine,
+                              typename Value::Part* shared) {
+  using Part = typename Value::Part;
+  constexpr Index parts = Value::parts, takers = block_size / parts, stride = takers * parts;
+  constexpr int at_once = 4;  // on their way from memory
+  const auto thread = static_cast<Index>(threadIdx.x);
+  Part own{};
+  if (thread < stride) {
+    for (Index k = thread; k < count * parts; k += at_once * stride) {
+      Part next[at_once];
+#pragma unroll
+      for (int j = 0; j < at_once; ++j)
+        next[j] = k + j * stride < count * parts ? all[k + j * stride] : Part{};
+#pragma unroll
+      for (int j = 0; j < at_once; ++j) own = combine(own, next[j]);
+    }
+  }
+  __syncthreads();  // all may be shared
+  if (thread < stride) shared[thread] = own;
+  __syncthreads();
+  if (thread < parts)
+    for (Index k = 1; k < takers; ++k)
+      shared[thread] = combine(shared[thread], shared[k * parts + thread]);
+  __syncthreads();
+}
+
+/// Combines the values of a block's threads into that of thread 0.
+template <class Value, class Combine>
+__device__ void combine_block(const Combine& combine, Value* shared) {
+  if constexpr (MadeOfParts<Value>) {
+    __syncthreads();
+    auto* const parts = reinterpret_cast<typename Value::Part*>(shared);
+    combine_parts<Value>(parts, block_size, combine, parts);
   } else {
-    return kernel(i);
+    for (unsigned half = block_size / 2; half > 0; half /= 2) {
+      __syncthreads();
+      if (threadIdx.x < half)
+        shared[threadIdx.x] = combine(shared[threadIdx.x], shared[threadIdx.x + half]);
+    }
   }
 }
 
@@ -205,12 +255,8 @@ __device__ void fold_in_block(std::int64_t first, std::int64_t stride, Index cou
   Value& value = shared[threadIdx.x];
   value = neutral;
   for (std::int64_t i = first + threadIdx.x; i < count; i += stride)
-    value = combine(value, item_value(neutral, kernel, static_cast<Index>(i)));
-  for (unsigned half = block_size / 2; half > 0; half /= 2) {
-    __syncthreads();
-    if (threadIdx.x < half)
-      shared[threadIdx.x] = combine(shared[threadIdx.x], shared[threadIdx.x + half]);
-  }
+    add_item(value, kernel, static_cast<Index>(i), combine);
+  combine_block(combine, shared);
 }
 
 /// One value a block.
@@ -231,6 +277,17 @@ struct FoundBefore {
   const Value* found;
   __device__ Value operator()(Index i) const { return found[i]; }
 };
+/// Combines what blocks have found, by one block, whose thread 0 tells it.
+template <class Value, class Combine>
+__device__ void tell_all(const Value* found, Index count, const Value& neutral,
+                         const Combine& combine, const Look& look, Value* shared) {
+  if constexpr (MadeOfParts<Value>)
+    combine_parts<Value>(reinterpret_cast<const typename Value::Part*>(found), count, combine,
+                         reinterpret_cast<typename Value::Part*>(shared));
+  else
+    fold_in_block(0, block_size, count, neutral, FoundBefore<Value>{found}, combine, shared);
+  if (threadIdx.x == 0) tell(look, shared[0]);
+}
 
 /// The value of all blocks, which the last one tells.
 template <class Value, class Kernel, class Combine>
@@ -244,9 +301,16 @@ __global__ void __launch_bounds__(block_size)
                 neutral, kernel, combine, shared);
   if (threadIdx.x == 0) partial[blockIdx.x] = shared[0];
   if (!is_last_block(look)) return;
-  fold_in_block(0, block_size, static_cast<Index>(gridDim.x), neutral, FoundBefore<Value>{partial},
-                combine, shared);
-  if (threadIdx.x == 0) tell(look, shared[0]);
+  tell_all(partial, static_cast<Index>(gridDim.x), neutral, combine, look, shared);
+}
+
+/// The value of all that launches before have found, by one block.
+template <class Value, class Combine>
+__global__ void __launch_bounds__(block_size)
+    tell_found(const Value* found, Index count, Value neutral, Combine combine, Look look) {
+  follow_previous();
+  __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
+  tell_all(found, count, neutral, combine, look, reinterpret_cast<Value*>(memory));
 }
 #endif
 

@@ -13,19 +13,21 @@
 namespace breccia {
 namespace {
 
+constexpr std::size_t bytes_of_look = most_told + 64;  ///< with its word, in a line of its own
+
 /// Of one stream.
 struct Place {
-  Look look{};
+  Look look{};  ///< the last one
+  std::byte* told = nullptr;
   std::size_t work = 0;
 
   Place() {
     void* memory = nullptr;
-    check_device(
-        cudaHostAlloc(&memory, most_told + 64, cudaHostAllocMapped | cudaHostAllocPortable),
-        "taking memory that the host sees");
-    std::memset(memory, 0, most_told + 64);
-    look.told = static_cast<std::byte*>(memory);
-    look.word = reinterpret_cast<std::uint32_t*>(look.told + most_told);
+    check_device(cudaHostAlloc(&memory, looks_on_their_way * bytes_of_look,
+                               cudaHostAllocMapped | cudaHostAllocPortable),
+                 "taking memory that the host sees");
+    std::memset(memory, 0, looks_on_their_way * bytes_of_look);
+    told = static_cast<std::byte*>(memory);
     look.ended = static_cast<std::uint32_t*>(allocate(Space::cuda, sizeof(std::uint32_t)));
     clear_bytes(look.ended, Space::cuda, sizeof(std::uint32_t));
   }
@@ -52,11 +54,15 @@ Look next_look(std::size_t work) {
     place.look.work = static_cast<std::byte*>(allocate(Space::cuda, work + work / 2));
     place.work = work + work / 2;
   }
-  ++place.look.number;
-  return place.look;
+  Look& look = place.look;
+  ++look.number;
+  look.told = place.told + look.number % looks_on_their_way * bytes_of_look;
+  look.word = reinterpret_cast<std::uint32_t*>(look.told + most_told);
+  return look;
 }
 
 void wait_for(const Look& look) {
+  BR_ASSERT(place_of(device_stream()).look.number - look.number < looks_on_their_way);
   const auto is_told = [&look] {
     return std::atomic_ref<std::uint32_t>(*look.word).load(std::memory_order_acquire) ==
            look.number;

@@ -10,7 +10,8 @@
 
 namespace breccia {
 
-/// Memory that the kernels of one look work with. There is one look at a time on a stream.
+/// Memory that the kernels of one look work with. Looks of a stream come one after the other, and
+/// each tells in a place of its own, so that several can be on their way.
 struct Look {
   std::byte* told;       ///< of the host: what is told
   std::uint32_t* word;   ///< of the host: number of the last look that was told
@@ -20,6 +21,8 @@ struct Look {
 };
 /// Most bytes that a look tells.
 inline constexpr std::size_t most_told = 4096;
+/// Looks of a stream that can be on their way: what one has told is there until as many more begin.
+inline constexpr std::uint32_t looks_on_their_way = 64;
 
 /// The next look on the stream of this thread. @param work  bytes that its kernels work with
 Look next_look(std::size_t work);

@@ -23,7 +23,7 @@ StoredByJoints stored_by_joints(const World& w) {
           w.lanes};
 }
 
-Energies held(const World& w) {
+std::function<Energies()> held_later(const World& w) {
   return fdem_shared::held_by_part(w);
 }
 void begin_ledger(World& w) {

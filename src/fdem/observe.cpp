@@ -109,7 +109,7 @@ Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
 namespace breccia::fdem_shared {
 
 template std::uint64_t state_hash(const fdem::World&);
-template Unsound find_unsound(const fdem::World&);
+template UnsoundLater find_unsound_later(const fdem::World&);
 template Fastest fastest(const fdem::World&);
 template std::vector<double> damage(const fdem::World&);
 template RuledStep ruled_step(const fdem::World&, bool);

@@ -9,8 +9,10 @@ namespace breccia::fdem {
 using fdem_shared::damage;
 using fdem_shared::fastest;
 using fdem_shared::find_unsound;
+using fdem_shared::find_unsound_later;
 using fdem_shared::mode_of;
 using fdem_shared::probe;
+using fdem_shared::probe_later;
 using fdem_shared::read_own;
 using fdem_shared::ruled_step;
 using fdem_shared::RuledStep;

@@ -43,7 +43,7 @@ JointsToRead joints_to_read(const World& w) {
 
 namespace breccia::fdem_shared {
 
-template double probe(const fdem::World&, const ProbeConfig&);
+template std::function<double()> probe_later(const fdem::World&, const ProbeConfig&);
 template Readings read_own(fdem::World&, const ProbeConfig&);
 
 }  // namespace breccia::fdem_shared

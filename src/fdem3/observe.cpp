@@ -106,7 +106,7 @@ Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
 namespace breccia::fdem_shared {
 
 template std::uint64_t state_hash(const fdem3::World&);
-template Unsound find_unsound(const fdem3::World&);
+template UnsoundLater find_unsound_later(const fdem3::World&);
 template Fastest fastest(const fdem3::World&);
 template std::vector<double> damage(const fdem3::World&);
 template RuledStep ruled_step(const fdem3::World&, bool);

@@ -41,7 +41,7 @@ JointsToRead joints_to_read(const World& w) {
 
 namespace breccia::fdem_shared {
 
-template double probe(const fdem3::World&, const ProbeConfig&);
+template std::function<double()> probe_later(const fdem3::World&, const ProbeConfig&);
 template Readings read_own(fdem3::World&, const ProbeConfig&);
 
 }  // namespace breccia::fdem_shared

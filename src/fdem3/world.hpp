@@ -1,6 +1,7 @@
 #pragma once
 // Everything a run of tetrahedra consists of between two steps.
 
+#include <functional>
 #include <vector>
 
 #include "core/broad_phase.hpp"
@@ -99,10 +100,11 @@ struct World {
 
   // Which part of the whole it is, and how its tetrahedra lie in the mesh: constant between two
   // migrations.
-  Domain domain;                   ///< (ranks; its ghosts that follow their owners: search)
-  WholeMesh mesh;                  ///< (ranks)
-  Halo tied_forces;                ///< ghosts whose corners move as one with own ones (ranks)
-  std::vector<SetHere> sets_here;  ///< places of Case::sets on this rank (sets; probes, servo)
+  Domain domain;     ///< (ranks; its ghosts that follow their owners: search)
+  WholeMesh mesh;    ///< (ranks)
+  Halo tied_forces;  ///< ghosts whose corners move as one with own ones (ranks)
+  mutable std::vector<SetHere>
+      sets_here;              ///< places of Case::sets on this rank (sets; probes, servo)
   std::vector<Index> across;  ///< face of the neighbour, -1: none here  [-]  (4 tetrahedra; ranks)
   std::vector<Index> vertex;  ///< vertex of the whole mesh at each node  [-]  (4 tetrahedra; ranks)
   Buffer<FaceJoints> faces;   ///< joints of each by face  [-]  (tetrahedra; set-up, ranks)
@@ -225,8 +227,12 @@ AllowedStep allowed_step(const World& w);
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);
 
-/// Energies that a part holds and has spent: of what it owns.
-Energies held(const World& w);
+/// Energies that a part holds and has spent, of what it owns, as they are now, when they are asked
+/// for: until then the host can go on.
+std::function<Energies()> held_later(const World& w);
+inline Energies held(const World& w) {
+  return held_later(w)();
+}
 /// Where every joule is.
 EnergySplit energy_split(const World& w);
 /// The balance of all energies; keeps the largest energy seen, for the relative error.

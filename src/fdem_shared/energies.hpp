@@ -95,7 +95,7 @@ struct CoupleShares {
 /// Energies that a rank's own elements hold and have spent, and the joints and couples whose first
 /// element it owns.
 template <class World>
-Energies held_by_part(const World& w) {
+std::function<Energies()> held_by_part(const World& w) {
   using Shape = ShapeOf<World>;
   const auto& t = Shape::elements(w);
   const auto of_elements = stored_by_elements(w);
@@ -130,7 +130,7 @@ Energies held_by_part(const World& w) {
                      own(GravityPotential<Shape>{gravity, t.nodes.view(), t.mass.view()},
                          ItemItself{}),
                      Parts<>{})))));
-  return all.sum();
+  return all.sum_later();
 }
 
 /// Starts the ledger at the present state.

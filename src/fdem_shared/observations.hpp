@@ -126,16 +126,11 @@ Fastest fastest(const World& w) {
   return {speed, text};
 }
 
+/// An unsound element, and what to tell of it.
 template <class World>
-Unsound find_unsound(const World& w) {
+Unsound told_of(const World& w, GlobalId bad) {
   using Shape = ShapeOf<World>;
-  const auto& t = Shape::elements(w);
-  const GlobalId bad = fold_owned(
-      w.exec, w.domain, t.size(), Unsound::none,
-      FindUnsound<Shape>{w.last_dt, t.id.view(), t.nodes.view(), Shape::reference(t).view()},
-      Least{});
-  if (bad == Unsound::none) return {};
-  const typename Shape::Elements host = host_copy(t);
+  const typename Shape::Elements host = host_copy(Shape::elements(w));
   const auto ids = host.id.host();
   const auto i = static_cast<Index>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
   const typename Shape::Nodes& nodes = host.nodes.data()[i];
@@ -155,6 +150,20 @@ Unsound find_unsound(const World& w) {
                 w.given->groups[static_cast<std::size_t>(host.group.data()[i])].c_str(), how,
                 w.last_dt, w.given->time.safety);
   return {bad, message};
+}
+
+template <class World>
+UnsoundLater find_unsound_later(const World& w) {
+  using Shape = ShapeOf<World>;
+  const auto& t = Shape::elements(w);
+  const auto found = fold_owned_later(
+      w.exec, w.domain, t.size(), Unsound::none,
+      FindUnsound<Shape>{w.last_dt, t.id.view(), t.nodes.view(), Shape::reference(t).view()},
+      Least{});
+  return [&w, found] {
+    const GlobalId bad = found.value();
+    return bad == Unsound::none ? Unsound{} : told_of(w, bad);
+  };
 }
 
 template <class World>

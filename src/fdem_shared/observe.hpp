@@ -18,7 +18,11 @@ std::uint64_t state_hash(const World& w);
 /// The first element of its own that is inside out, not finite, or moves more than its size in a
 /// step.
 template <class World>
-Unsound find_unsound(const World& w);
+UnsoundLater find_unsound_later(const World& w);
+template <class World>
+Unsound find_unsound(const World& w) {
+  return find_unsound_later(w)();
+}
 /// The element of its own that moves fastest: where energy is lost, it may be the one to look at.
 template <class World>
 Fastest fastest(const World& w);
@@ -36,9 +40,13 @@ double mode_of(const Joints& joints, Index i) {
   return opened + slid > 0.0 ? slid / (opened + slid) : 0.0;
 }
 
-/// A probe's reading of the whole.
+/// A probe's reading of the whole, when it is asked for: until then the host can go on.
 template <class World>
-double probe(const World& w, const ProbeConfig& probe);
+std::function<double()> probe_later(const World& w, const ProbeConfig& probe);
+template <class World>
+double probe(const World& w, const ProbeConfig& probe) {
+  return probe_later(w, probe)();
+}
 /// Readings of a probe on a rank's own elements; their sum over all ranks is that of the mesh.
 template <class World>
 Readings read_own(World& part, const ProbeConfig& probe);

@@ -130,8 +130,8 @@ struct ReadJoints {
 };
 
 template <class World>
-Readings read_corners(const World& w, const ProbeConfig& p, const Quantity& quantity,
-                      const Buffer<Index>& members) {
+ReadingsLater read_corners(const World& w, const ProbeConfig& p, const Quantity& quantity,
+                           const Buffer<Index>& members) {
   using Shape = ShapeOf<World>;
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
@@ -140,18 +140,19 @@ Readings read_corners(const World& w, const ProbeConfig& p, const Quantity& quan
     if (of_probe.probe == p.name) fit = of_probe.fit;
   const auto& t = Shape::elements(w);
   const auto of_world = kick(w);
-  return fold_owned(w.exec, w.domain, p.on.empty() ? Shape::corners * t.size() : members.size(),
-                    Readings{},
-                    ReadCorner<Shape, std::remove_cv_t<decltype(of_world)>>{
-                        quantity, members.view(), t.id.view(), of_world, std::as_const(lost).view(),
-                        w.given->starts.view(), ReadBox(p.min, p.max),
-                        from_space<typename Shape::Vector>(point_of(p.about)), fit},
-                    Sum{}, MemberElement<Shape::corners>{members.view()});
+  const auto readings = fold_owned_later(
+      w.exec, w.domain, p.on.empty() ? Shape::corners * t.size() : members.size(), Readings{},
+      ReadCorner<Shape, std::remove_cv_t<decltype(of_world)>>{
+          quantity, members.view(), t.id.view(), of_world, std::as_const(lost).view(),
+          w.given->starts.view(), ReadBox(p.min, p.max),
+          from_space<typename Shape::Vector>(point_of(p.about)), fit},
+      Sum{}, MemberElement<Shape::corners>{members.view()});
+  return [readings] { return readings.value(); };
 }
 
 /// @param members  of the set that the probe names, by their places in memory
 template <class World>
-Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members) {
+ReadingsLater read(const World& w, const ProbeConfig& p, const Buffer<Index>& members) {
   using Shape = ShapeOf<World>;
   using Kind = Quantity::Kind;
   const Quantity quantity = quantity_named(p.quantity).quantity;
@@ -168,48 +169,51 @@ Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members
   const ReadBox box(p.min, p.max);
   if (kind == Kind::stress) {
     const auto stress = stress_to_read(w);
-    return fold_owned(
+    const auto readings = fold_owned_later(
         w.exec, w.domain, t.size(), Readings{},
         ReadStress<std::remove_cv_t<decltype(stress)>>{quantity, box, marked, t.id.view(), stress},
         Sum{});
+    return [readings] { return readings.value(); };
   }
   const auto ends = joints_to_read(w);
   const auto stage = w.joints.stage.view();
   using Stage = std::remove_cvref_t<decltype(stage[0])>;
-  return fold_owned(w.exec, w.domain, w.joints.size(), Readings{},
-                    ReadJoints<std::remove_cv_t<decltype(ends)>, Stage, Shape::corners>{
-                        kind, box, marked, t.id.view(), stage, ends},
-                    Sum{}, ListedElement<Shape::corners>{ends.side_a});
+  const auto readings =
+      fold_owned_later(w.exec, w.domain, w.joints.size(), Readings{},
+                       ReadJoints<std::remove_cv_t<decltype(ends)>, Stage, Shape::corners>{
+                           kind, box, marked, t.id.view(), stage, ends},
+                       Sum{}, ListedElement<Shape::corners>{ends.side_a});
+  return [readings] { return readings.value(); };
 }
 
+/// Of a rank's own elements, and not of bolts.
 template <class World>
-double probe(const World& w, const ProbeConfig& p) {
-  if (const auto bolt = read_bolt(w, p)) return bolt->reduced(p.reduce);
-  constexpr auto where = ShapeOf<World>::dimension == 2 ? in_plane : in_solid;
-  for (const std::string& problem : probe_problems(p, where)) throw InputError(problem);
-  Buffer<Index> members(w.exec.space);
-  if (!p.on.empty()) {
-    const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
-                                  [&](const auto& s) { return s.name == p.on; });
-    if (set == w.given->sets.end())
-      throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
-    copy_to(members, set->nodes);
-  }
-  return read(w, p, members).reduced(p.reduce);
-}
-
-template <class World>
-Readings read_own(World& part, const ProbeConfig& p) {
-  if (const auto bolt = read_bolt(part, p)) return *bolt;
+ReadingsLater read_elements(const World& part, const ProbeConfig& p) {
   using Shape = ShapeOf<World>;
+  if (p.on.empty()) return read(part, p, Buffer<Index>(part.exec.space));
   const auto& sets = part.given->sets;
   const auto set =
       std::find_if(sets.begin(), sets.end(), [&](const auto& s) { return s.name == p.on; });
-  if (set == sets.end()) return read(part, p, Buffer<Index>(part.exec.space));
+  if (set == sets.end())
+    throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
   SetHere& here = part.sets_here[static_cast<std::size_t>(set - sets.begin())];
   keep_here(here, part.domain, Shape::elements(part).id, set->nodes, Shape::corners,
             part.exec.space);
   return read(part, p, here.places);
+}
+
+template <class World>
+std::function<double()> probe_later(const World& w, const ProbeConfig& p) {
+  if (const auto bolt = read_bolt(w, p)) return [value = bolt->reduced(p.reduce)] { return value; };
+  constexpr auto where = ShapeOf<World>::dimension == 2 ? in_plane : in_solid;
+  for (const std::string& problem : probe_problems(p, where)) throw InputError(problem);
+  return [read = read_elements(w, p), how = p.reduce] { return read().reduced(how); };
+}
+
+template <class World>
+Readings read_own(World& part, const ProbeConfig& p) {
+  const auto bolt = read_bolt(part, p);
+  return bolt ? *bolt : read_elements(part, p)();
 }
 
 }  // namespace breccia::fdem_shared

@@ -171,23 +171,10 @@ struct SetMoving {
 template <class World, class Visit>
 auto with_corners_of_set(World& w, std::size_t set, const Visit& visit) {
   using Shape = ShapeOf<World>;
-  const std::vector<Index>& nodes = w.given->sets[set].nodes;
-  if (!w.domain.single_rank()) {
-    SetHere& here = w.sets_here[set];
-    keep_here(here, w.domain, Shape::elements(w).id, nodes, Shape::corners, w.exec.space);
-    return visit(std::as_const(here.places).view());
-  }
-  Buffer<Index> there(w.exec.space);
-  View<const Index> corners;
-  if (w.exec.space == Space::host) {
-    corners.data = nodes.data();
-    corners.size = static_cast<Index>(nodes.size());
-    corners.space = Space::host;
-  } else {
-    copy_to(there, nodes);
-    corners = std::as_const(there).view();
-  }
-  return visit(corners);
+  SetHere& here = w.sets_here[set];
+  keep_here(here, w.domain, Shape::elements(w).id, w.given->sets[set].nodes, Shape::corners,
+            w.exec.space);
+  return visit(std::as_const(here.places).view());
 }
 
 template <class World>

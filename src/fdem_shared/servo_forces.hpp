@@ -174,16 +174,9 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
   using Shape = ShapeOf<World>;
   const auto& set = part.given->sets[number];
   auto& e = Shape::elements(part);
-  Buffer<Index> all(part.exec.space);
-  View<const Index> corners;
-  if (part.domain.single_rank()) {
-    copy_to(all, set.nodes);
-    corners = std::as_const(all).view();
-  } else {
-    SetHere& here = part.sets_here[number];
-    keep_here(here, part.domain, e.id, set.nodes, Shape::corners, part.exec.space);
-    corners = std::as_const(here.places).view();
-  }
+  SetHere& here = part.sets_here[number];
+  keep_here(here, part.domain, e.id, set.nodes, Shape::corners, part.exec.space);
+  const View<const Index> corners = std::as_const(here.places).view();
   const SupportServoConfig& servo = config.servo;
   const int axis = servo.axis_number();
   const ServoState& state = part.servos[support];

@@ -56,6 +56,10 @@ class AuditedMethod final : public Method {
     left_.reset();
     method_->note_breaks();
   }
+  Row row() override {
+    left_.reset();
+    return method_->row();
+  }
   std::uint64_t state_hash() override { return method_->state_hash(); }
   void verify() override { method_->verify(); }
   std::string fastest() override { return method_->fastest(); }

@@ -74,6 +74,21 @@ class Method {
   virtual std::vector<double> probes() = 0;
   /// A row of the history is written: bonds that have broken since the last one get its time.
   virtual void note_breaks() {}
+  /// What a row of the history holds.
+  struct Row {
+    std::vector<double> probes;
+    EnergyBalance energy;
+  };
+  /// Looks for numbers that went wrong, notes breaks and reads probes and energies; on a device by
+  /// launches that follow each other without waiting. @throws NumericsError as verify()
+  virtual Row row() {
+    verify();
+    note_breaks();
+    Row now;
+    now.probes = probes();
+    now.energy = energy();
+    return now;
+  }
   /// Order-free hash of all element states by global id: equal on any thread or rank count.
   virtual std::uint64_t state_hash() = 0;
   /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element

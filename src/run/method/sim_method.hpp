@@ -14,8 +14,10 @@
 #include "exec/error.hpp"
 #include "run/frames/frame_parts.hpp"
 #include "run/machine/load_check.hpp"
+#include "run/method/each_servo.hpp"
 #include "run/method/lagging_probes.hpp"
 #include "run/method/method.hpp"
+#include "run/method/read_later.hpp"
 #include "run/method/shared_world.hpp"
 #include "run/method/stored.hpp"
 
@@ -151,8 +153,9 @@ class SimMethod final : public Method {
       at_once(world_.ranks(), [&] { Sim::begun(world_.part()); });
   }
 
-  EnergyBalance energy() override {
-    const Energies all = energies_of_all();
+  EnergyBalance energy() override { return balance_of(energies_of_all()); }
+  /// On rank 0.
+  EnergyBalance balance_of(const Energies& all) {
     if (!leads(world_.ranks())) return {};
     EnergyBalance now = Sim::balance(world_.ledger(), all, steps());
     if (spent_on_cracks_ == 0.0) return now;
@@ -164,6 +167,21 @@ class SimMethod final : public Method {
     std::vector<double> values = read_now(probes_);
     lagging_.tell(values);
     return values;
+  }
+  Row row() override {
+    if (!single_rank()) return Method::row();
+    foresee();
+    World& w = world_.part();
+    const UnsoundLater unsound = find_unsound_later(w);
+    note_breaks();
+    const std::function<std::vector<double>()> probes = read_later(w, probes_);
+    const std::function<Energies()> energies = held_later(w);
+    require_sound(unsound());
+    Row now;
+    now.probes = probes();
+    lagging_.tell(now.probes);
+    now.energy = balance_of(energies());
+    return now;
   }
   void note_breaks() override {
     if constexpr (requires(World & w) { Sim::note_breaks(w); })
@@ -192,9 +210,7 @@ class SimMethod final : public Method {
         if (id < first.id) first = {id, {text.begin(), text.end()}};
       }
     }
-    on_first(world_.ranks(), [&] {
-      if (first.id != Unsound::none) throw NumericsError(first.text);
-    });
+    on_first(world_.ranks(), [&] { require_sound(first); });
   }
 
   std::string fastest() override {
@@ -289,6 +305,9 @@ class SimMethod final : public Method {
   }
 
  private:
+  static void require_sound(const Unsound& first) {
+    if (first.id != Unsound::none) throw NumericsError(first.text);
+  }
   /// Whether something spreads between steps.
   static bool has_fluid(const World& w) {
     if constexpr (requires { Sim::has_fluid(w); }) return Sim::has_fluid(w);
@@ -330,7 +349,7 @@ class SimMethod final : public Method {
   Energies energies_of_all() {
     foresee();
     World& w = world_.part();
-    Energies all = held(w);
+    Energies all = held_later(w)();
     if (single_rank()) return all;
     Message message;
     put_value(message, all);
@@ -347,11 +366,8 @@ class SimMethod final : public Method {
   std::vector<double> read_now(const std::vector<ProbeConfig>& probes) {
     foresee();
     World& w = world_.part();
+    if (single_rank()) return read_later(w, probes)();
     std::vector<double> values;
-    if (single_rank()) {
-      for (const ProbeConfig& p : probes) values.push_back(probe(w, p));
-      return values;
-    }
     Message message;
     for (const ProbeConfig& p : probes) put_value(message, read_own(w, p));
     std::vector<Readings> all(probes.size());
@@ -381,20 +397,6 @@ class SimMethod final : public Method {
         }
       });
     correct_servos(world_.part(), now_, sums);
-  }
-  template <class Visit>
-  static void each_servo(const Config& now, const Visit& visit) {
-    std::size_t k = 0;
-    if constexpr (requires { now.walls; })
-      for (const auto& wall : now.walls) visit(wall.servo, k++);
-    for (const auto& support : now.supports) visit(support.servo, k++);
-  }
-  static bool slows(const Config& now) {
-    bool any = false;
-    each_servo(now, [&](const ServoConfig& servo, std::size_t) {
-      any |= servo.is_on() && servo.slow > 0.0;
-    });
-    return any;
   }
   /// Servos that are slowed learn from time to time how far from rest the model is.
   void share_by_rest() {

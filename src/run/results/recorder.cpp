@@ -184,8 +184,10 @@ void Recorder::note_step(const StepRow& row) {
 
 void Recorder::record(Method& method, Background& background) {
   const double time = method.time();
-  if (time >= rows_.next()) {
-    write_row(method);
+  if (time < rows_.next()) {
+    method.verify();
+  } else {
+    write_row(method);  // which verifies
     naming_fastest(method, [&] {
       if (watch_.look(*last_energy_, method.steps(), time))
         log_->warn(
@@ -262,9 +264,8 @@ void Recorder::sync() {
 }
 
 void Recorder::write_row(Method& method) {
-  method.note_breaks();
-  const std::vector<double> probes = method.probes();
-  last_energy_ = method.energy();
+  const auto [probes, energy] = method.row();
+  last_energy_ = energy;
   on_first(ranks_, [&] {
     require_numbers(*last_energy_);
     const std::string stage =
