@@ -262,8 +262,14 @@ class Findings {
     if (use.share < 1.0)
       text += fmt::format(": if all grows in proportion, {:.2g} times the load begins to break it",
                           1.0 / use.share);
-    else
+    else if (record_.number("energy.fracture").value_or(0.0) > 0.0)
       text += ": it softens there, and a little more breaks it";
+    else if (first_->spheres())
+      text += ", and yet no link has softened: those there bear more than the others";
+    else
+      text +=
+          " in the direction that is pulled most, and yet nothing softens: no joint lies across "
+          "it. A finer mesh has joints in more directions";
     return text + ".";
   }
 
@@ -277,9 +283,12 @@ class Findings {
       if (const std::string name = kind->first.substr(list.size()); kind->second > cut_of(name))
         kinds.push_back(fmt::format("{} of {}", count_text(kind->second - cut_of(name)), name));
     if (kinds.size() > 1) text += ": " + listed(kinds);
-    const std::optional<double> softening = first_softening();
-    if (softening) text += fmt::format("; softening began at {}", time_text(*softening));
-    if (const std::vector<Break>& breaks = record_.breaks; !breaks.empty()) {
+    const std::optional<Softening> softening = first_softening();
+    const std::vector<Break>& breaks = record_.breaks;
+    // Of no news where rows are so far apart that the first had broken by then.
+    if (softening && (breaks.empty() || softening->by < breaks.front().time))
+      text += fmt::format("; softening began by {}", time_text(softening->by));
+    if (!breaks.empty()) {
       // Rows of the history tell when links broke, each joint tells its own time.
       const char* const when = record_.cracks.columns.empty() ? "by" : "at";
       text +=
@@ -290,9 +299,10 @@ class Findings {
     } else if (find_first_break() && break_frame_ > 0) {
       // Frames may be far apart; what softens late breaks later.
       const double end = record_.times[break_frame_], before = record_.times[break_frame_ - 1];
-      const double after = softening && *softening < end ? std::max(before, *softening) : before;
+      const double after =
+          softening && softening->after < end ? std::max(before, softening->after) : before;
       text += fmt::format("{} the first broke between {} and {}", glue(text), time_text(after),
-                          time_text(record_.times[break_frame_]));
+                          time_text(end));
     }
     return text + ".";
   }
@@ -302,13 +312,17 @@ class Findings {
     return text.find(';') == std::string::npos ? ";" : ",";
   }
 
-  /// Time of the first row of the history with work of fracture.  [s]
-  std::optional<double> first_softening() const {
+  /// Times of the first row of the history with work of fracture, and of the row before.  [s]
+  struct Softening {
+    double after, by;
+  };
+  std::optional<Softening> first_softening() const {
     const Column* const time = record_.history.column("time");
     const Column* const spent = record_.history.column("fracture");
     if (time == nullptr || spent == nullptr) return std::nullopt;
     for (std::size_t i = 0; i < spent->values.size(); ++i)
-      if (spent->values[i] > 1e-6 * spent->values.back()) return time->values[i];
+      if (spent->values[i] > 1e-6 * spent->values.back())
+        return Softening{time->values[i > 0 ? i - 1 : 0], time->values[i]};
     return std::nullopt;
   }
 

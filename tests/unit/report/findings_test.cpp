@@ -25,7 +25,7 @@ TEST(Findings, ABrokenChainIsToldByWhatWhenAndWhere) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
   const std::string text = joined(findings_of(read_record(folder.path())));
-  EXPECT_NE(text.find("1 of 7 links broke (14 %); softening began at 2 ms, the first broke between "
+  EXPECT_NE(text.find("1 of 7 links broke (14 %); softening began by 2 ms, the first broke between "
                       "1 ms and 2 ms."),
             std::string::npos)
       << text;
@@ -67,6 +67,22 @@ TEST(Findings, ListsOfBrokenLinksTellWhenMoreCloselyThanFrames) {
   const std::string text = joined(findings_of(read_record(folder.path())));
   EXPECT_NE(text.find("the first broke by 1.3 ms, half of them by 1.5 ms."), std::string::npos)
       << text;
+}
+
+/// Rows that are farther apart than softening takes: nothing breaks before it softens.
+TEST(Findings, NothingBreaksBeforeItSoftens) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  const auto told = [&](const char* broke) {
+    test::write_text(folder.path() + "/broken_links.csv",
+                     fmt::format("a,b,kind,time\n-,-,-,s\n3,4,0,{}\n", broke));
+    return joined(findings_of(read_record(folder.path())));
+  };
+  const std::string before = told("0.0013");  // the row is of 2 ms
+  EXPECT_NE(before.find("(14 %); the first broke by 1.3 ms."), std::string::npos) << before;
+  const std::string after = told("0.0023");
+  EXPECT_NE(after.find("softening began by 2 ms, the first broke by 2.3 ms."), std::string::npos)
+      << after;
 }
 
 TEST(Findings, OneEventHasOneMagnitude) {
@@ -188,6 +204,17 @@ TEST(Findings, TetrahedraAreJudgedByTheirLargestPrincipalStress) {
   write_block(folder.path(), false, stress);
   const std::string text = joined(findings_of(read_record(folder.path())));
   EXPECT_NE(text.find("is 0.75 of the strength of rock"), std::string::npos) << text;
+}
+
+/// Joints of coarse meshes lie askew of what is pulled most.
+TEST(Findings, TensionThatNoJointLiesAcrossSoftensNothing) {
+  const ScratchFolder folder;
+  write_block(folder.path(), false, {8e6, 0.0, 0.0, 0.0, 0.0, 0.0});
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("is 2 of the strength of rock"), std::string::npos) << text;
+  EXPECT_EQ(text.find("softens there"), std::string::npos) << text;
+  EXPECT_NE(text.find("and yet nothing softens: no joint lies across it."), std::string::npos)
+      << text;
 }
 
 TEST(Findings, CracksOfTetrahedraHaveAPlaceAndDirections) {
