@@ -25,8 +25,8 @@ std::vector<std::string> case_problems(const fdem3::Config& config);
 
 /// Bodies that share space by their keys alone. The built model is tested by its elements again.
 std::vector<std::string> overlap_problems(const std::vector<dem::BodyConfig>& bodies);
-/// Plates, beams and discs without holes and slots; discs if they overlap by more than an edge of
-/// their mesh, which lies within the circle.
+/// Plates, beams and discs without holes and slots; discs if they overlap by more than sides of
+/// their mesh lie within the circle.
 std::vector<std::string> overlap_problems(const std::vector<fdem::BodyConfig>& bodies);
 /// Boxes, cylinders and spheres; round ones if they overlap by more than an edge of their mesh.
 /// Cylinders with different axes are not looked at.

@@ -6,6 +6,7 @@
 
 #include "core/most_names.hpp"
 #include "core/nearest_name.hpp"
+#include "math/constants.hpp"
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/meshing/holes.hpp"
 
@@ -29,6 +30,15 @@ bool is_plain(const BodyConfig& b) {
   const bool slotted = std::any_of(b.notches.begin(), b.notches.end(),
                                    [](const fdem::NotchConfig& n) { return n.width > 0.0; });
   return plain && b.holes.empty() && !slotted;
+}
+
+/// By how much sides of a disc's mesh may lie within its circle, and a hundredth of an edge that
+/// shares no area to speak of.  [m]
+double within_circle(const BodyConfig& disc) {
+  const double r = disc.radius, edge = disc.mesh_size;
+  const double sides = disc.structured ? 6.0 * std::max(1.0, std::round(r / edge))
+                                       : std::max(3.0, std::floor(2.0 * pi * r / edge));
+  return r * (1.0 - std::cos(pi / sides)) + 0.01 * std::min(edge, r);
 }
 
 /// The space between two plain bodies; below 0 they share space by so much.  [m]
@@ -231,7 +241,7 @@ std::vector<std::string> overlap_problems(const std::vector<BodyConfig>& bodies)
       if (!is_plain(a) || !is_plain(b)) continue;
       double tolerance = 1e-9 * (norm(a.size) + norm(b.size) + norm(a.center) + norm(b.center));
       for (const BodyConfig* each : {&a, &b})
-        if (each->shape == "disc") tolerance = std::max(tolerance, each->mesh_size);
+        if (each->shape == "disc") tolerance += within_circle(*each);
       if (gap(a, b) < -tolerance) problems.push_back(overlap_problem(a.name, b.name));
     }
   return problems;

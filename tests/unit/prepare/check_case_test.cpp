@@ -12,6 +12,7 @@
 #include "exec/error.hpp"
 #include "fdem/setup/materials.hpp"
 #include "io/whole_file.hpp"
+#include "math/constants.hpp"
 #include "prepare/build.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "unit/prepare/fdem_scenes.hpp"
@@ -342,9 +343,9 @@ TEST(CheckFdem, each_two_of_many_materials_have_a_law) {
 }
 
 TEST(CheckFdem, finds_plain_bodies_in_each_other_as_the_build_does) {
-  const auto overlap = [](double x, const char* shape) {
+  const auto overlap = [](double x, const char* shape, double edge = 0.01) {
     fdem::Config config = plate_case();
-    fdem::BodyConfig other = fdem::disc_of(0.03, 0.01);
+    fdem::BodyConfig other = fdem::disc_of(0.03, edge);
     other.structured = true;
     if (shape == std::string("plate")) other = fdem::regular_plate({0.1, 0.05}, 0.01);
     other.name = "other";
@@ -358,6 +359,10 @@ TEST(CheckFdem, finds_plain_bodies_in_each_other_as_the_build_does) {
   };
   EXPECT_TRUE(overlap(0.06, "disc"));
   EXPECT_FALSE(overlap(0.0801, "disc"));
+  for (const double edge : {0.005, 0.01, 0.02, 0.03}) {  // of 36, 18, 12 and 6 sides
+    const double inside = 0.03 * (1.0 - std::cos(pi / (6.0 * std::round(0.03 / edge))));
+    EXPECT_TRUE(overlap(0.08 - inside - 0.011 * edge, "disc", edge)) << edge;
+  }
   EXPECT_TRUE(overlap(0.099, "plate"));
   EXPECT_FALSE(overlap(0.1, "plate"));
 }
