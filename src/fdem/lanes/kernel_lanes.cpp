@@ -32,10 +32,12 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
 
 }  // namespace
 
-LeftJoints BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end, bool books) {
+[[gnu::flatten]] LeftJoints BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end,
+                                          bool books) {
   return run_whole(kernel, begin, end, books);
 }
-LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end, bool books) {
+[[gnu::flatten]] LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end,
+                                          bool books) {
   return run_whole(kernel, begin, end, books);
 }
 
@@ -47,10 +49,10 @@ LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index en
   return run_alike<WidestPack>(kernel, pack);
 }
 
-Index BR_PACKS::run(const TriangleForces<double>& kernel, Index begin, Index end) {
+[[gnu::flatten]] Index BR_PACKS::run(const TriangleForces<double>& kernel, Index begin, Index end) {
   return run_all(kernel, begin, end);
 }
-Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end) {
+[[gnu::flatten]] Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end) {
   return run_all(kernel, begin, end);
 }
 
