@@ -12,11 +12,15 @@
 namespace breccia {
 namespace {
 
-/// Of the spheres within the box, the farthest places in the four directions of the slanted view;
-/// in those of the other views the box itself is as tight.
-std::array<Vec3, 4> outline_of(const Frame& frame, const Extent& extent) {
+/// The four directions of the slanted view; in those of the other views a box is tight.
+std::array<Vec3, 4> outline_directions() {
   const Axes axes = axes_of_view("iso");
-  const std::array directions{axes.right, -axes.right, axes.up, -axes.up};
+  return {axes.right, -axes.right, axes.up, -axes.up};
+}
+
+/// Of the spheres within the box, the farthest places in these directions.
+std::array<Vec3, 4> outline_of(const Frame& frame, const Extent& extent) {
+  const std::array directions = outline_directions();
   std::array<double, 4> reach{-1e300, -1e300, -1e300, -1e300};
   std::array<Vec3, 4> outline;
   outline.fill(0.5 * (extent.low + extent.high));
@@ -152,16 +156,25 @@ Extent joined(const Extent& extent, const Extent& other, double share) {
   widen(both.low.x, both.high.x, other.low.x, other.high.x);
   widen(both.low.y, both.high.y, other.low.y, other.high.y);
   widen(both.low.z, both.high.z, other.low.z, other.high.z);
-  both.outline_points = 0;
+  both.outline_points = std::min(extent.outline_points, other.outline_points);
+  const std::array directions = outline_directions();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(both.outline_points); ++d) {
+    const double farther = dot(other.outline[d] - extent.outline[d], directions[d]);
+    if (farther > 0.0) both.outline[d] = other.outline[d] + share * farther * directions[d];
+  }
   return both;
 }
 
-/// Whether an extent shows as much of another as one would miss.
-bool shows(const Extent& extent, const Extent& other) {
-  const double slack = 0.02 * size_of(extent);
-  return other.low.x >= extent.low.x - slack && other.low.y >= extent.low.y - slack &&
-         other.low.z >= extent.low.z - slack && other.high.x <= extent.high.x + slack &&
-         other.high.y <= extent.high.y + slack && other.high.z <= extent.high.z + slack;
+/// Whether an extent shows another but for `slack` of its size.
+bool shows(const Extent& extent, const Extent& other, double slack) {
+  const double over = slack * size_of(extent);
+  if (extent.outline_points > other.outline_points) return false;
+  const std::array directions = outline_directions();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(extent.outline_points); ++d)
+    if (dot(other.outline[d] - extent.outline[d], directions[d]) > over) return false;
+  return other.low.x >= extent.low.x - over && other.low.y >= extent.low.y - over &&
+         other.low.z >= extent.low.z - over && other.high.x <= extent.high.x + over &&
+         other.high.y <= extent.high.y + over && other.high.z <= extent.high.z + over;
 }
 
 }  // namespace
@@ -205,8 +218,10 @@ Extent bulk_extent(const Frame& frame) {
 
 Extent grown_extent(const Extent& extent, const Extent& first, const Frame& frame, double share) {
   constexpr double farthest = 4.0, of_largest = 12.0;  // times the first extent
+  // A film stands still for what its margin shows; what looks at a whole run can show all.
+  const double slack = share > 0.0 ? 0.005 : 0.0;
   const Extent now = bulk_extent(frame);
-  if (frame.position.empty() || shows(extent, now)) return extent;
+  if (frame.position.empty() || shows(extent, now, slack)) return extent;
   const Extent all = joined(extent, now, share);
   if (size_of(all) <= farthest * size_of(first)) return all;
   const std::vector<std::vector<std::size_t>> bodies = bodies_of(frame);
@@ -214,10 +229,11 @@ Extent grown_extent(const Extent& extent, const Extent& first, const Frame& fram
   add_bulk(largest, frame,
            *std::max_element(bodies.begin(), bodies.end(),
                              [](const auto& a, const auto& b) { return a.size() < b.size(); }));
-  if (shows(extent, largest)) return extent;
+  largest = with_outline(largest, frame);
+  if (shows(extent, largest, slack)) return extent;
   const Extent with_largest = joined(extent, largest, share);
   if (size_of(with_largest) <= of_largest * size_of(first)) return with_largest;
-  return with_outline(largest, frame);
+  return largest;
 }
 
 }  // namespace breccia

@@ -302,6 +302,29 @@ TEST(looks, the_extent_grows_with_what_leaves_it_and_follows_what_flies_far) {
   EXPECT_EQ(grown_extent(first, first, two, 0.5).high.z, first.high.z);
 }
 
+/// A picture's margin is about a hundredth of it: less is forgiven while a film runs, nothing
+/// after.
+TEST(looks, the_extent_of_a_run_holds_all_that_its_frames_show) {
+  std::vector<Vec3> cloud;
+  for (int i = 0; i < 125; ++i) cloud.push_back({0.1 * (i % 5), 0.1 * (i / 5 % 5), 0.1 * (i / 25)});
+  const Frame frame = spheres(cloud, 0.05);
+  Frame later = frame;
+  for (Vec3& p : later.position) p.z += 0.01;  // 1.2 % of the cloud's diagonal
+  const Extent first = bulk_extent(frame), now = bulk_extent(later);
+  EXPECT_NEAR(grown_extent(first, first, later, 0.5).high.z, first.high.z + 0.015, 1e-9);
+  const Extent all = grown_extent(first, first, later, 0.0);
+  EXPECT_EQ(all.high.z, now.high.z);
+  EXPECT_EQ(all.low.z, first.low.z);
+  for (Vec3& p : later.position) p.z -= 0.0099;
+  EXPECT_EQ(grown_extent(first, first, later, 0.5).high.z, first.high.z);
+  EXPECT_EQ(grown_extent(first, first, later, 0.0).high.z, bulk_extent(later).high.z);
+  // Seen aslant it is as large as before.
+  ASSERT_EQ(all.outline_points, 4);
+  const auto up = axes_of_view("iso").up;
+  EXPECT_EQ(dot(all.outline[2], up), dot(now.outline[2], up));
+  EXPECT_EQ(dot(all.outline[3], up), dot(first.outline[3], up));
+}
+
 TEST(looks, a_wall_lies_behind_the_model_and_is_hatched_from_its_edge) {
   Frame frame = spheres({{0, 0, 0}}, 1.0);
   frame.walls = {{{0, 0, -1}, {0, 0, 1}}};
