@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/picture/font.hpp"
 #include "io/round_numbers.hpp"
 
 namespace breccia {
@@ -14,6 +15,8 @@ namespace {
 constexpr int panel_width = 480, panel_height = 340;  // pixels
 constexpr int left_rim = 68, right_rim = 16, top_rim = 34,
               bottom_rim = 48;             // pixels around the axes
+constexpr int line_height = 15;            // of a legend  [pixels]
+constexpr double narrowest = 240.0;        // axes beside a legend  [pixels]
 constexpr std::size_t most_points = 1500;  // of a curve that are drawn
 constexpr std::array colors{"#1f5fa8", "#c8502b", "#2f8f4e", "#7d4aa0",  // legible on white
                             "#b58a00", "#00838f", "#8a4b2a", "#5a5a5a"};
@@ -43,6 +46,49 @@ struct Span {
   }
 };
 
+/// Of the letters of a browser, from above: those that pictures have are among the widest. [pixels]
+double width_of(const std::string& text) {
+  constexpr double pixels_per_unit = 1.25;  // 12 pixels are the height of a line
+  return pixels_per_unit * text_width(text, 1);
+}
+
+struct PlotBox {
+  double left, top, right, bottom;  ///<  [pixels]
+};
+
+/// A straight piece of what is drawn, or a point.
+struct PlotPiece {
+  double x1, y1, x2, y2;  ///<  [pixels]
+
+  bool meets(const PlotBox& box) const {
+    double from = 0.0, to = 1.0;  // of the piece: what lies in the box
+    const auto cut = [&](double start, double way, double low, double high) {
+      if (way == 0.0) return start >= low && start <= high;
+      const double a = (low - start) / way, b = (high - start) / way;
+      from = std::max(from, std::min(a, b));
+      to = std::min(to, std::max(a, b));
+      return from <= to;
+    };
+    return cut(x1, x2 - x1, box.left, box.right) && cut(y1, y2 - y1, box.top, box.bottom);
+  }
+};
+
+/// The first of the boxes that cover the fewest pieces, and how many those are.
+struct FreeBox {
+  std::size_t box = 0;
+  std::ptrdiff_t covers = 0;
+};
+FreeBox freest_box(const std::vector<PlotBox>& boxes, const std::vector<PlotPiece>& pieces) {
+  FreeBox best;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const std::ptrdiff_t covers =
+        std::count_if(pieces.begin(), pieces.end(),
+                      [&box = boxes[k]](const PlotPiece& piece) { return piece.meets(box); });
+    if (k == 0 || covers < best.covers) best = {k, covers};
+  }
+  return best;
+}
+
 /// One plot within the sheet; (x, y) is its upper left corner.
 class Panel {
  public:
@@ -51,6 +97,7 @@ class Panel {
   std::string text() {
     std::string svg = label(x_ + panel_width / 2, y_ + 20, plot_.title, "middle", "title");
     if (!take_spans()) return svg + label(middle(), y_ + panel_height / 2, "no numbers", "middle");
+    make_room();
     svg += axes();
     for (const PlotLevel& level : plot_.levels) svg += drawn(level);
     for (std::size_t s = 0; s < plot_.series.size(); ++s)
@@ -59,14 +106,16 @@ class Panel {
   }
 
  private:
-  int middle() const { return x_ + left_rim + (panel_width - left_rim - right_rim) / 2; }
+  double middle() const { return 0.5 * (left() + right()); }
+  double left() const { return x_ + left_; }
+  double right() const { return x_ + panel_width - right_; }
 
   bool take_spans() {
     Span x, y;
     for (const PlotSeries& series : plot_.series)
       for (std::size_t k = 0; k < series.x.size(); ++k) {
         if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
-        const double error = k < series.error.size() ? series.error[k] : 0.0;
+        const double error = error_at(series, k);
         x.add(series.x[k]);
         y.add(series.y[k] - error);
         y.add(series.y[k] + error);
@@ -80,12 +129,73 @@ class Panel {
   }
 
   double place_x(double value) const {
-    const double width = panel_width - left_rim - right_rim;
-    return x_ + left_rim + width * (value - x_span_.low) / (x_span_.high - x_span_.low);
+    return left() + (right() - left()) * (value - x_span_.low) / (x_span_.high - x_span_.low);
   }
   double place_y(double value) const {
     const double height = panel_height - top_rim - bottom_rim;
     return y_ + top_rim + height * (y_span_.high - value) / (y_span_.high - y_span_.low);
+  }
+
+  /// Numbers lie between the axis and its label, the legend where no curve is: beside the axes if
+  /// there is no such place within.
+  void make_room() {
+    constexpr double of_label = 22.0, gap = 6.0;  // pixels
+    for (const Tick& tick : ticks_of(y_span_, std::pow(10.0, -power_of(y_span_))))
+      left_ = std::max(left_, of_label + width_of(tick.text) + gap);
+    double width = 0.0, height = 0.0;
+    for (const PlotSeries& series : plot_.series) {
+      if (series.name.empty()) continue;
+      width = std::max(width, legend_text + width_of(series.name) + gap);
+      height += line_height;
+    }
+    const double top = y_ + top_rim + 2.0, bottom = y_ + panel_height - bottom_rim - 2.0 - height;
+    const double first = left() + 4.0, last = right() - width, centre = 0.5 * (first + last);
+    std::vector<PlotBox> boxes;
+    for (const auto& [x, y] : {std::pair(first, top),
+                               {last, top},
+                               {first, bottom},
+                               {last, bottom},
+                               {centre, top},
+                               {centre, bottom}})
+      boxes.push_back({x, y, x + width, y + height});
+    const FreeBox best = freest_box(boxes, pieces());
+    legend_ = boxes[best.box];
+    if (best.covers == 0 || right() - width - left() < narrowest) return;
+    right_ += width;
+    legend_ = {right() + gap, top, right() + gap + width, top + height};
+  }
+
+  /// All that is drawn within the axes.
+  std::vector<PlotPiece> pieces() const {
+    std::vector<PlotPiece> all;
+    for (const PlotLevel& level : plot_.levels)
+      all.push_back({left(), place_y(level.y), right(), place_y(level.y)});
+    for (const PlotSeries& series : plot_.series) {
+      bool down = false;
+      each_point(series, [&](std::size_t k, bool finite) {
+        if (!finite) return void(down = false);
+        const double x = place_x(series.x[k]), y = place_y(series.y[k]);
+        PlotPiece piece{x, y, x, y};
+        if (down && series.line) piece = {all.back().x2, all.back().y2, x, y};
+        if (const double error = error_at(series, k); error > 0.0)
+          all.push_back({x, place_y(series.y[k] - error), x, place_y(series.y[k] + error)});
+        all.push_back(piece);
+        down = true;
+      });
+    }
+    return all;
+  }
+
+  static double error_at(const PlotSeries& series, std::size_t k) {
+    return k < series.error.size() ? series.error[k] : 0.0;
+  }
+  /// Calls visit(number, whether it is finite) for the points that are drawn.
+  template <class Visit>
+  static void each_point(const PlotSeries& series, const Visit& visit) {
+    const std::size_t count = std::min(series.x.size(), series.y.size());
+    const std::size_t stride = series.marks ? 1 : count / most_points + 1;
+    for (std::size_t k = 0; k < count; k += stride)
+      visit(k, std::isfinite(series.x[k]) && std::isfinite(series.y[k]));
   }
 
   static std::string label(double x, double y, const std::string& text, const char* anchor,
@@ -111,7 +221,7 @@ class Panel {
   }
 
   std::string axes() const {
-    const double x0 = x_ + left_rim, x1 = x_ + panel_width - right_rim;
+    const double x0 = left(), x1 = right();
     const double y0 = y_ + panel_height - bottom_rim, y1 = y_ + top_rim;
     std::string svg;
     const int power_y = power_of(y_span_), power_x = power_of(x_span_);
@@ -141,52 +251,62 @@ class Panel {
     return colors[(given < 0 ? series : static_cast<std::size_t>(given)) % colors.size()];
   }
 
+  /// The name of a level stands at an end of it, above or below, where it covers least.
   std::string drawn(const PlotLevel& level) const {
-    return rule(x_ + left_rim, place_y(level.y), x_ + panel_width - right_rim, place_y(level.y),
-                "level") +
-           label(x_ + panel_width - right_rim - 2, place_y(level.y) - 4, level.name, "end");
+    const double y = place_y(level.y), width = width_of(level.name);
+    std::vector<PlotBox> boxes;
+    for (const double x : {right() - 2.0 - width, left() + 4.0})
+      for (const double base : {y - 4.0, y + 13.0})
+        boxes.push_back({x, base - 10.0, x + width, base + 3.0});
+    const PlotBox& box = boxes[freest_box(boxes, pieces()).box];
+    return rule(left(), y, right(), y, "level") +
+           label(box.left, box.bottom - 3.0, level.name, "start");
   }
 
   std::string drawn(const PlotSeries& series, const char* color) const {
-    const std::size_t count = std::min(series.x.size(), series.y.size());
-    const std::size_t stride = series.marks ? 1 : count / most_points + 1;
     std::string path, marks;
     bool down = false;
-    for (std::size_t k = 0; k < count; k += stride) {
-      if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) {
-        down = false;
-        continue;
-      }
+    each_point(series, [&](std::size_t k, bool finite) {
+      if (!finite) return void(down = false);
       const double x = place_x(series.x[k]), y = place_y(series.y[k]);
       path += fmt::format("{}{:.1f} {:.1f}", down ? "L" : "M", x, y);
       down = true;
       if (series.marks)
         marks +=
             fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x, y, color);
-      if (k < series.error.size() && series.error[k] > 0.0)
+      if (const double error = error_at(series, k); error > 0.0)
         marks += fmt::format("<path class=\"curve\" stroke=\"{}\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n",
-                             color, x, place_y(series.y[k] - series.error[k]),
-                             place_y(series.y[k] + series.error[k]));
-    }
+                             color, x, place_y(series.y[k] - error), place_y(series.y[k] + error));
+    });
     if (!series.line) return marks;
     return fmt::format("<path class=\"curve\" stroke=\"{}\" d=\"{}\"/>\n", color, path) + marks;
   }
 
   std::string legend() const {
     std::string svg;
-    int line = 0;
+    double y = legend_.top + 12.0;
     for (std::size_t s = 0; s < plot_.series.size(); ++s) {
       if (plot_.series[s].name.empty()) continue;
-      const int y = y_ + top_rim + 14 + 15 * line++;
-      svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"12\" height=\"3\" fill=\"{}\"/>\n",
-                         x_ + left_rim + 10, y - 5, color_of(s));
-      svg += label(x_ + left_rim + 27, y, plot_.series[s].name, "start");
+      svg +=
+          fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"12\" height=\"3\" fill=\"{}\"/>\n",
+                      legend_.left + 6.0, y - 5.0, color_of(s));
+      svg += label(legend_.left + legend_text, y, plot_.series[s].name, "start");
+      y += line_height;
     }
-    return svg;
+    if (svg.empty()) return svg;
+    return fmt::format(
+               "<rect class=\"veil\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+               "height=\"{:.1f}\"/>\n",
+               legend_.left, legend_.top, legend_.right - legend_.left,
+               legend_.bottom - legend_.top) +
+           svg;
   }
 
+  static constexpr double legend_text = 23.0;  // behind the mark of a curve  [pixels]
   const LinePlot& plot_;
   int x_, y_;
+  double left_ = left_rim, right_ = right_rim;  // as wide as texts beside the axes ask for [pixels]
+  PlotBox legend_{};
   ValueRange x_span_{0.0, 1.0}, y_span_{0.0, 1.0};
 };
 
@@ -200,7 +320,7 @@ std::string svg_of(const std::vector<LinePlot>& plots, int columns) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
       "{1}\">\n<style>text{{font:12px sans-serif;fill:#222}}.title{{font-weight:bold}}"
       ".grid{{stroke:#e4e4e4}}.axis{{stroke:#444}}.level{{stroke:#444;stroke-dasharray:6 4}}"
-      ".curve{{fill:none;stroke-width:1.6}}</style>\n"
+      ".curve{{fill:none;stroke-width:1.6}}.veil{{fill:white;fill-opacity:0.8}}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
       across * panel_width, down * panel_height);
   for (int k = 0; k < count; ++k)
