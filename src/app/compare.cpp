@@ -30,6 +30,8 @@ namespace lab = laboratory;
 
 /// The results of a run, as a row of a table.
 lab::SweepRow row_of(const std::string& folder) {
+  if (!std::filesystem::exists(folder))
+    throw IoError(folder + ": cannot be read: there is no such folder");
   lab::SweepRow row;
   row.folder = folder;
   row.result = lab::read_result(folder);

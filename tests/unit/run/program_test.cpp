@@ -384,7 +384,10 @@ TEST_F(Program, ComparesRunsSideBySide) {
   EXPECT_NE(output().find("states differ\n"), std::string::npos) << output();
   EXPECT_EQ(run("compare " + path("a") + " " + path("c") + " --measure energy.kinetik"), 2);
   EXPECT_NE(output().find("energy.kinetic"), std::string::npos) << output();
-  EXPECT_EQ(run("compare " + path("a") + " " + path("nothing")), 2);
+  EXPECT_EQ(run("compare " + path("a") + " " + path("nothing")), 3);
+  EXPECT_NE(output().find("there is no such folder"), std::string::npos) << output();
+  std::filesystem::create_directory(path("empty"));
+  EXPECT_EQ(run("compare " + path("a") + " " + path("empty")), 2);
   EXPECT_NE(output().find("holds no run"), std::string::npos) << output();
   EXPECT_NE(run("compare " + path("a")), 0);
 }
