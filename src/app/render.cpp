@@ -23,6 +23,7 @@
 #include "io/harmless.hpp"
 #include "io/picture/field_colors.hpp"
 #include "io/picture/picture.hpp"
+#include "io/picture/sides.hpp"
 #include "io/picture/vector_picture.hpp"
 #include "io/round_numbers.hpp"
 #include "io/vtu/vtu_reader.hpp"
@@ -122,9 +123,11 @@ struct RenderCommand {
     options.height = 0;
     if (good && x != end) {
       const auto [last, second] = std::from_chars(x + 1, end, options.height);
-      good = *x == 'x' && second == std::errc{} && last == end && options.height >= 16;
+      good = *x == 'x' && second == std::errc{} && last == end && is_side(options.height);
     }
-    if (!good) throw InputError("--size " + size + ": pixels, such as 1600x1200 or 1600");
+    if (!good || !is_side(options.width))
+      throw InputError(fmt::format("--size {}: {} to {} pixels each, such as 1600x1200 or 1600",
+                                   size, least_side, largest_side));
   }
 
   /// With the title that is asked for or, without one, the case's; panels say of which folder.

@@ -9,6 +9,7 @@
 #include "io/picture/annotation.hpp"
 #include "io/picture/layout.hpp"
 #include "io/picture/scene.hpp"
+#include "io/picture/sides.hpp"
 #include "io/picture/solid.hpp"
 #include "io/picture/walls.hpp"
 
@@ -266,10 +267,11 @@ Image render_on(const Frame& frame, const RenderOptions& options, int threads,
 }  // namespace
 
 void check_frame(const Frame& frame, const RenderOptions& options) {
-  const bool fits = options.height == 0 || (options.height >= 16 && options.height <= 16384);
-  if (options.width < 16 || !fits || options.width > 16384) {
-    throw InputError("a picture of " + std::to_string(options.width) + " x " +
-                     std::to_string(options.height) + " pixels; 16 to 16384 are possible");
+  if (!is_side(options.width) || (options.height != 0 && !is_side(options.height))) {
+    const std::string by = options.height != 0 ? " x " + std::to_string(options.height) : "";
+    throw InputError("a picture of " + std::to_string(options.width) + by + " pixels; " +
+                     std::to_string(least_side) + " to " + std::to_string(largest_side) +
+                     " are possible");
   }
   const auto count = static_cast<std::int64_t>(frame.position.size());
   const auto known = [count](std::int32_t point) { return point >= 0 && point < count; };

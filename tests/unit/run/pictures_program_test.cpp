@@ -131,6 +131,10 @@ TEST(PicturesProgram, pictures_of_a_case_and_of_render_know_the_same_looks) {
   EXPECT_FALSE(image.alpha.empty());
   EXPECT_EQ(ran.run("verify " + picture), 0) << ran.text;
   EXPECT_EQ(ran.run("render " + ran.out() + " --size 12y"), 2);
+  for (const char* size : {"10x10", "10", "20000x10", "300x99999999999"}) {
+    EXPECT_EQ(ran.run("render " + ran.out() + " --size " + size), 2);
+    EXPECT_NE(ran.text.find("16 to 16384 pixels"), std::string::npos) << ran.text;
+  }
   EXPECT_EQ(ran.run("render " + ran.out() + " --arrows spun"), 2);
   EXPECT_NE(ran.text.find("velocity"), std::string::npos);
 }
