@@ -63,8 +63,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--max-wall", options.max_wall,
-          "save and end (exit code 10) before so much wall-clock time has passed; exit code 2 "
-          "where the model is not built by then")
+          "save and end (exit code 10) before so much wall-clock time has passed: 3h50m, 90m, "
+          "00:45:00, or a number of seconds; exit code 2 where the model is not built by then")
       ->type_name("TIME")
       ->check([](const std::string& text) {
         return wall_time(text) ? "" : text + " is no time such as 3h50m, 90m, 45 or 00:45:00";

@@ -260,6 +260,10 @@ void load_beam(dem::Config& c, const Vec3& size, double radius, double speed, do
   c.probes.push_back(probe("force_top_right", "top_right", "force_z", "sum"));
 }
 
+bool is_tested_concrete(const dem::MaterialConfig& material) {
+  return material.law == "concrete" || material.law == "parallel" || material.law == "ldpm";
+}
+
 }  // namespace
 
 Sample sample_of(const dem::Config& config, const std::string& material) {
@@ -267,8 +271,8 @@ Sample sample_of(const dem::Config& config, const std::string& material) {
   const auto found = std::find_if(config.materials.begin(), config.materials.end(),
                                   [&](const auto& m) { return m.name == material; });
   if (found == config.materials.end())
-    throw InputError(no_such_material(material, config.materials));
-  if (found->law != "concrete" && found->law != "parallel" && found->law != "ldpm")
+    throw InputError(no_such_material(material, config.materials, is_tested_concrete));
+  if (!is_tested_concrete(*found))
     throw InputError(
         fmt::format("material {} has the law {}: only concrete, parallel bonds and ldpm are "
                     "tested; nothing was run",

@@ -24,11 +24,13 @@ struct Sample {
   int elements = 1200;
 };
 
-/// The problem of a name that no material of a case has.
-template <class Materials>
-std::string no_such_material(const std::string& name, const Materials& materials) {
+/// The problem of a name that no material of a case has; it tells of those that are `tested`.
+template <class Materials, class Tested>
+std::string no_such_material(const std::string& name, const Materials& materials,
+                             const Tested& tested) {
   std::set<std::string> known;
-  for (const auto& material : materials) known.insert(material.name);
+  for (const auto& material : materials)
+    if (tested(material)) known.insert(material.name);
   return "the case has no material " + name + suggestion(name, known) + "; nothing was run";
 }
 

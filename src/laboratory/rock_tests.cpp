@@ -137,14 +137,18 @@ void press_disc(fdem::Config& c, const RockSample& sample) {
   add_end_probes(c);
 }
 
+bool is_tested_rock(const fdem::MaterialConfig& material) {
+  return material.joints != "none";
+}
+
 }  // namespace
 
 RockSample rock_sample_of(const fdem::Config& config, const std::string& material) {
   const auto found = std::find_if(config.materials.begin(), config.materials.end(),
                                   [&](const auto& m) { return m.name == material; });
   if (found == config.materials.end())
-    throw InputError(no_such_material(material, config.materials));
-  if (found->joints == "none")
+    throw InputError(no_such_material(material, config.materials, is_tested_rock));
+  if (!is_tested_rock(*found))
     throw InputError(
         fmt::format("material {} has no joints: it does not break; nothing was run", material));
   RockSample sample;

@@ -68,6 +68,8 @@ std::string example_value(const KeyInfo& key) {
     return key.unit == "m" ? "[0.0, \"5 mm\"]" : key.default_text;
   if (key.type == "points") return "[[0.0, 0.0], [\"10 mm\", 0.2]]";
   if (key.type == "points in space") return "[[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]";
+  if (key.type == "numbers" && !key.limits.holds(0.0))
+    return key.unit == "m" ? "[\"4 mm\", \"8 mm\"]" : "[1.0, 2.0]";
   if (key.type == "numbers") return "[0.0, 1.0]";
   if (key.type == "number") {
     double value = 0.0;

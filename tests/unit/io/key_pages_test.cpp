@@ -64,6 +64,28 @@ TEST(Keys, each_is_listed_with_type_unit_default_range_and_meaning) {
   EXPECT_EQ(find(keys, "body[].material")->default_text, "(required)");
 }
 
+/// A line that is shown can be typed.
+TEST(Keys, examples_lie_in_their_own_ranges) {
+  int lists = 0;
+  for (const MethodKeys& method : methods())
+    for (const KeyInfo& key : method.keys) {
+      const std::string line = example_line(key);
+      if (key.type == "number" && key.default_text != "(required)") {
+        EXPECT_TRUE(key.limits.holds(std::stod(key.default_text))) << key.path << ": " << line;
+      }
+      if (key.type != "numbers") continue;
+      const toml::table parsed = toml::parse(line);
+      for (const toml::node& item : *parsed.begin()->second.as_array()) {
+        const double value = item.value<double>().value_or(0.004);  // "4 mm"
+        EXPECT_TRUE(key.limits.holds(value)) << key.path << ": " << line;
+        ++lists;
+      }
+    }
+  EXPECT_GT(lists, 10);
+  EXPECT_EQ(example_line(*find(methods()[0].keys, "body[].pack.sieves")),
+            "sieves = [\"4 mm\", \"8 mm\"]");
+}
+
 TEST(Keys, a_prefix_needs_no_brackets_and_no_names) {
   EXPECT_EQ(count("body.pack"), 8U);
   EXPECT_EQ(count("body[].pack"), 8U);
