@@ -43,6 +43,12 @@ bool has_key(const std::vector<KeyInfo>& keys, const std::string& path) {
   });
 }
 
+std::vector<KeyInfo> keys_of(const std::string& method) {
+  return method == "fdem2d"   ? list_keys<fdem::Config>("")
+         : method == "fdem3d" ? list_keys<fdem3::Config>("")
+                              : list_keys<dem::Config>("");
+}
+
 /// Of a word without a table that is a key of some: which.
 Problem told_of_tables(Problem problem, const std::string& method) {
   static const std::string unknown = " is not a key", set = "--set ";
@@ -51,16 +57,52 @@ Problem told_of_tables(Problem problem, const std::string& method) {
   if (end == std::string::npos || end + unknown.size() != problem.text.size()) return problem;
   const std::string word = problem.text.substr(begin, end - begin);
   if (word.find_first_of(" .[=\"") != std::string::npos) return problem;
-  const std::vector<KeyInfo> keys = method == "fdem2d"   ? list_keys<fdem::Config>("")
-                                    : method == "fdem3d" ? list_keys<fdem3::Config>("")
-                                                         : list_keys<dem::Config>("");
   std::vector<std::string> tables;
-  for (const KeyInfo& key : keys)
+  for (const KeyInfo& key : keys_of(method))
     if (key.path.ends_with("." + word)) tables.push_back(table_heading(key));
   constexpr std::size_t most = 3;
   if (tables.empty() || tables.size() > most) return problem;
   problem.text +=
       fmt::format("; {} {} it", fmt::join(tables, " and "), tables.size() > 1 ? "have" : "has");
+  return problem;
+}
+
+/// The words of a path, "body[0].pack" or "body[].pack": body, 0 or nothing, pack.
+std::vector<std::string> words_of(const std::string& path) {
+  std::vector<std::string> words(1);
+  for (const char c : path) {
+    if (c == '.' || c == '[')
+      words.emplace_back();
+    else if (c != ']')
+      words.back() += c;
+  }
+  return words;
+}
+
+/// Of an unknown key that a table within its table has: which.
+Problem told_of_inner(Problem problem, const std::string& method) {
+  static const std::string unknown = " is not a key", set = "--set ";
+  const std::size_t begin = problem.text.starts_with(set) ? set.size() : 0;
+  const std::size_t end = problem.text.find(unknown);
+  const std::string path = problem.text.substr(begin, end - begin);
+  if (end == std::string::npos || path.find_first_of(" =\"") != std::string::npos) return problem;
+  const std::vector<std::string> words = words_of(path);
+  if (words.size() < 2) return problem;
+  const std::string above = path.substr(0, path.rfind('.') + 1);
+  std::vector<std::string> tables;
+  for (const KeyInfo& key : keys_of(method)) {
+    const std::vector<std::string> own = words_of(key.path);
+    if (own.size() != words.size() + 1 || own.back() != words.back()) continue;
+    bool within = true;
+    for (std::size_t k = 0; k + 1 < words.size(); ++k)
+      within &= own[k] == words[k] || own[k].empty() || own[k] == "<name>";
+    const std::string& table = own[own.size() - 2];
+    if (within && !table.empty() && table != "<name>") tables.push_back(above + table);
+  }
+  if (tables.empty()) return problem;
+  problem.correction.reset();
+  problem.text = fmt::format("{}{}; it belongs in {}", problem.text.substr(0, end), unknown,
+                             fmt::join(tables, " or "));
   return problem;
 }
 
@@ -94,7 +136,7 @@ Problem told_of_others(Problem problem, const std::string& method) {
 }  // namespace
 
 Problem told_of_unknown(Problem problem, const std::string& method) {
-  return told_of_tables(told_of_others(std::move(problem), method), method);
+  return told_of_inner(told_of_tables(told_of_others(std::move(problem), method), method), method);
 }
 
 }  // namespace breccia

@@ -382,9 +382,13 @@ TEST(CheckCommand, tells_which_methods_have_a_key) {
   EXPECT_EQ(told("dem3d", "body = [{ name = \"a\", weibull = { modulus = 4.0 } }]\n"),
             "body.a.weibull is not a key of dem3d; fdem2d and fdem3d have it");
   EXPECT_EQ(told("fdem2d", "links.range = 1.4\n"), "links is not a key of fdem2d; dem3d has it");
-  // a word that the method has itself, in another table
+  // a word that the method has itself, in a table within
   EXPECT_EQ(told("fdem2d", "joint = { seam = { tension = 1e6 } }\n"),
-            "joint.seam.tension is not a key; allowed are between, strength");
+            "joint.seam.tension is not a key; it belongs in joint.seam.strength");
+  EXPECT_EQ(told("fdem3d", "body = [{ name = \"a\", modulus = 4.0 }]\n"),
+            "body.a.modulus is not a key; it belongs in body.a.weibull");
+  EXPECT_EQ(told("dem3d", "body = [{ count = 100 }]\n"),
+            "body[0].count is not a key; it belongs in body[0].pack");
   EXPECT_EQ(told("dem3d", "[[bodi]]\nname = \"a\"\n"),
             "bodi is not a key; did you mean body? (corrected)");
 }
