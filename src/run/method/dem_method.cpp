@@ -99,7 +99,7 @@ struct DemSim {
       add("device.tiles",
           w.tiles.plan == nullptr ? 0.0 : static_cast<double>(w.tiles.plan->tiles.size()));
   }
-  static void add_findings(const World& w, std::vector<Fact>& facts) {
+  static void add_findings(const World& w, std::vector<Fact>& facts, const SpentOnCracks&) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     const dem::Counts n = dem::count(w);
     add("contacts.touching", n.touching);

@@ -33,8 +33,8 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
 
   static FramePart frame(World& w, const World* mesh) { return fdem3_frame(w, mesh); }
 
-  void add_findings(const World& w, std::vector<Fact>& facts) const {
-    add_cracks(w, facts);
+  void add_findings(const World& w, std::vector<Fact>& facts, const SpentOnCracks& spent) const {
+    add_cracks(w, facts, spent);
     add_fluids(w, facts);
     add_bolt_findings(w, facts);
     add_emission(facts, emission(w));

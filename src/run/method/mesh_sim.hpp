@@ -82,7 +82,7 @@ struct MeshSim {
     const auto waiting = std::count(phase.begin(), phase.end(), fdem_shared::CouplePhase::waits);
     add("contacts.candidates", static_cast<double>(w.couples.size() - waiting));
   }
-  static void add_cracks(const World& w, std::vector<Fact>& facts) {
+  static void add_cracks(const World& w, std::vector<Fact>& facts, const SpentOnCracks& spent) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     const auto all = cracks(w);
     double area = 0.0, sliding = 0.0;
@@ -99,8 +99,8 @@ struct MeshSim {
     add("fracture.broken_by_mode.opening", count - sliding);
     add("fracture.broken_by_mode.sliding", sliding);
     const EnergySplit split = energy_split(w);
-    add("fracture.energy_by_mode.opening", split.fracture_open);
-    add("fracture.energy_by_mode.sliding", split.fracture_slide);
+    add("fracture.energy_by_mode.opening", split.fracture_open + spent.opening());
+    add("fracture.energy_by_mode.sliding", split.fracture_slide + spent.sliding);
   }
   /// @param mass  of each piece, falling
   static void add_fragments(const std::vector<double>& mass, std::vector<Fact>& facts) {

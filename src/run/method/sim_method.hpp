@@ -19,6 +19,7 @@
 #include "run/method/method.hpp"
 #include "run/method/read_later.hpp"
 #include "run/method/shared_world.hpp"
+#include "run/method/spent_on_cracks.hpp"
 #include "run/method/stored.hpp"
 
 namespace breccia {
@@ -31,13 +32,13 @@ namespace breccia {
 template <class Sim>
 concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
                               Ledger& ledger, const Energies& energies, StateArrays& arrays,
-                              const OwnForces& own) {
+                              const OwnForces& own, const SpentOnCracks& spent) {
   { Sim::balance(ledger, energies, std::int64_t{}) } -> std::same_as<EnergyBalance>;
   // The frame of a world, or what a part has of it; rank 0 knows the whole mesh, too.
   { Sim::frame(w, &w) } -> std::same_as<FramePart>;
   // Counts of the model, and findings about its state.
   sim.add_model(w, facts);
-  sim.add_findings(w, facts);
+  sim.add_findings(w, facts, spent);
   // Arrays that others may look at while it runs.
   Sim::add_arrays(w, arrays);
   // Forces of the program that holds the simulation.
@@ -158,8 +159,8 @@ class SimMethod final : public Method {
   EnergyBalance balance_of(const Energies& all) {
     if (!leads(world_.ranks())) return {};
     EnergyBalance now = Sim::balance(world_.ledger(), all, steps());
-    if (spent_on_cracks_ == 0.0) return now;
-    now.fracture += spent_on_cracks_;
+    if (spent_.all == 0.0) return now;
+    now.fracture += spent_.all;
     if (steps() != 0) now.relate_to(world_.ledger().largest);
     return now;
   }
@@ -255,7 +256,7 @@ class SimMethod final : public Method {
       std::vector<Fact> facts;
       sim_.add_model(w, facts);
       world_.add_facts(facts);
-      sim_.add_findings(w, facts);
+      sim_.add_findings(w, facts, spent_);
       return facts;
     });
   }
@@ -322,7 +323,8 @@ class SimMethod final : public Method {
         lagging_(other.lagging_),
         case_(other.case_),
         now_(other.now_),
-        gravity_(other.gravity_) {
+        gravity_(other.gravity_),
+        spent_(other.spent_) {
     world_.forget_timers();
   }
 
@@ -434,8 +436,7 @@ class SimMethod final : public Method {
       return Sim::balance(ledger, all, steps());
     };
     const EnergyBalance was = balance(before), is = balance(after);
-    const double spent = was.fracture - is.fracture;
-    spent_on_cracks_ += spent;
+    const double spent = spent_.add(was.fracture - is.fracture, before, after);
     world_.ledger().start_potential.add(was.missing() - (is.missing() + spent));
   }
   /// The stage that a checkpoint is in, on all ranks, and the case as it is then.
@@ -459,7 +460,7 @@ class SimMethod final : public Method {
   void each_stored(World& w, const Visit& visit) {
     if (!case_.stages.empty()) {
       visit("stage", w.stage);
-      visit("spent_on_cracks", spent_on_cracks_);
+      spent_.each_stored(visit);
     }
     for (std::size_t k = 0; k < w.servos.size(); ++k)
       visit("servos." + std::to_string(k), w.servos[k]);
@@ -493,7 +494,7 @@ class SimMethod final : public Method {
   Config case_;
   Config now_;                                  ///< as it is in the present stage
   decltype(Config{}.gravity.value) gravity_{};  ///< as it acts now  [m/s2]
-  double spent_on_cracks_ = 0.0;                ///< of links whose law a stage has changed  [J]
+  SpentOnCracks spent_;
 };
 
 }  // namespace breccia
