@@ -130,7 +130,8 @@ void Run::start() {
     log_->write(Level::info, "setup", method_.steps(),
                 fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
                             method_.time()));
-    say(opening_text(now, end_time_, end_steps_, folder_->path()));
+    say(opening_text(now, {stages_.end_by_time(end_time_), end_steps_, stages_.may_end_early()},
+                     folder_->path()));
     for (const std::string& warning : warnings_) log_->warn_once("setup", method_.steps(), warning);
   });
   method_.verify();

@@ -105,7 +105,8 @@ class Run {
     return method_.time() >= plan_.config.time.end || stages_.all_over();
   }
   double share() const {
-    const double by_time = end_time_ > 0.0 ? method_.time() / end_time_ : 1.0;
+    const double end = stages_.end_by_time(end_time_);
+    const double by_time = end > 0.0 ? method_.time() / end : 1.0;
     const double by_steps = static_cast<double>(method_.steps()) / static_cast<double>(end_steps_);
     return std::clamp(std::max(by_time, by_steps), 0.0, 1.0);
   }

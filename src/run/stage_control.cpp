@@ -53,6 +53,24 @@ bool StageControl::is_look(std::int64_t step) const {
   return step % look_every == 0 && (s.rest > 0.0 || s.drop > 0.0 || !s.when.empty());
 }
 
+double StageControl::end_by_time(double end) const {
+  if (stages_.empty()) return end;
+  const StageProgress progress = method_.stage();
+  std::size_t k = at(progress.index);
+  double sum = progress.over() ? progress.end[k++] : progress.begin[k];
+  for (; k <= last_; ++k) {
+    if (!(stages_[k].until > 0.0)) return end;
+    sum += stages_[k].until;
+  }
+  return std::min(sum, end);
+}
+
+bool StageControl::may_end_early() const {
+  for (std::size_t k = at(method_.stage().index); k < stages_.size() && k <= last_; ++k)
+    if (stages_[k].rest > 0.0 || stages_[k].drop > 0.0 || !stages_[k].when.empty()) return true;
+  return false;
+}
+
 StopAt StageControl::limited(StopAt stop) const {
   if (stages_.empty() || method_.stage().over()) return stop;
   const StageEnd& s = present();

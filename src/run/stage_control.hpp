@@ -28,6 +28,11 @@ class StageControl {
   bool all_over() const;
   /// Begins the next stage, where a former run ended with the one before.
   void go_on();
+  /// When the run ends at the latest: at `end`, or with the last of stages that all end by time.
+  /// [s]
+  double end_by_time(double end) const;
+  /// Whether a stage to come may end before its `until`: at rest, or by a probe.
+  bool may_end_early() const;
   /// `stop`, or the next look before it.
   StopAt limited(StopAt stop) const;
   /// Ends the present stage and begins the next, if it is time. Returns what happened, in words.

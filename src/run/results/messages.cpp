@@ -66,8 +66,7 @@ std::string elasticity_text(const std::vector<Fact>& facts) {
 
 }  // namespace
 
-std::string opening_text(const Summary& s, double end_time, std::int64_t end_steps,
-                         const std::string& folder) {
+std::string opening_text(const Summary& s, const RunEnd& end, const std::string& folder) {
   std::string text =
       fmt::format("breccia {}  {} x{} {}{}\n", this_build().version, s.machine.device,
                   s.machine.threads, s.machine.threads == 1 ? "thread" : "threads",
@@ -79,19 +78,20 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
       text += fmt::format("   {} {}", count_text(*count), kind);
   text += fmt::format("   memory {:.0f} MB\n", static_cast<double>(s.peak_memory) / 1e6);
   text += elasticity_text(s.facts);
-  const double left_by_steps = static_cast<double>(std::max<std::int64_t>(end_steps - s.steps, 0));
+  const double left_by_steps = static_cast<double>(std::max<std::int64_t>(end.steps - s.steps, 0));
   const double left_by_time =
-      s.dt_last > 0.0 ? std::max(0.0, std::ceil((end_time - s.time) / s.dt_last)) : left_by_steps;
+      s.dt_last > 0.0 ? std::max(0.0, std::ceil((end.time - s.time) / s.dt_last)) : left_by_steps;
   text += "step    ";
   if (s.dt_last > 0.0)
     text += fmt::format("dt {:.3g} s{}   ", s.dt_last,
                         s.dt_rule.empty() ? "" : " ruled by " + s.dt_rule);
-  if (left_by_steps <= left_by_time && end_steps != std::numeric_limits<std::int64_t>::max())
+  if (left_by_steps <= left_by_time && end.steps != std::numeric_limits<std::int64_t>::max())
     text += fmt::format("{} steps\n", count_text(left_by_steps));
   else if (s.dt_last > 0.0)
-    text += fmt::format("about {} steps to {}\n", count_text(left_by_time), time_text(end_time));
+    text += fmt::format("{}about {} steps to {}\n", end.may_be_earlier ? "at most " : "",
+                        count_text(left_by_time), time_text(end.time));
   else
-    text += fmt::format("to {}\n", time_text(end_time));
+    text += fmt::format("to {}\n", time_text(end.time));
   if (s.steps > 0)
     text += fmt::format("from    step {}, {}\n", count_text(static_cast<double>(s.steps)),
                         time_text(s.time));

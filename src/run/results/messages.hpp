@@ -2,6 +2,7 @@
 // The opening and closing lines of a run.
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,15 @@
 
 namespace breccia {
 
+/// Where a run ends at the latest.
+struct RunEnd {
+  double time = 0.0;  ///< simulated  [s]
+  std::int64_t steps = std::numeric_limits<std::int64_t>::max();
+  bool may_be_earlier = false;  ///< a stage may end at rest or by a probe
+};
+
 /// Text at the start: what was read and what is to come.
-/// @param end_time   simulated time at which the run ends  [s]
-/// @param end_steps  steps after which it ends at the latest
-std::string opening_text(const Summary& summary, double end_time, std::int64_t end_steps,
-                         const std::string& folder);
+std::string opening_text(const Summary& summary, const RunEnd& end, const std::string& folder);
 
 /// How many links or joints have broken, in words; empty if there are none to break.
 std::string broken_text(const std::vector<Fact>& facts);

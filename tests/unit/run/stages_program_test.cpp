@@ -108,6 +108,21 @@ TEST_F(StagedProgram, TellsItsStagesAndEndsWithTheLast) {
   EXPECT_NE(report::read_table(path("out/history.csv")).column("place"), nullptr);
 }
 
+TEST_F(StagedProgram, CountsStepsToTheEndOfItsLastStage) {
+  ASSERT_EQ(run("run " + path("case.toml") + " --steps 1 -o " + path("by_probe")), 0) << output();
+  ASSERT_EQ(run("run " + path("case.toml") + " --until 1e-4 -o " + path("short")), 0) << output();
+  EXPECT_NE(output().find(" steps to 100 us\n"), std::string::npos) << output();
+  ASSERT_EQ(run("run " + path("case.toml") + " -o " + path("whole")), 0) << output();
+  EXPECT_NE(output().find("   at most about "), std::string::npos) << output();
+  EXPECT_NE(output().find(" steps to 40 ms\n"), std::string::npos) << output();
+  replace_file(path("case.toml"), with_end("until = \"3 ms\"\n"));
+  ASSERT_EQ(run("run " + path("case.toml") + " --stage lower -o " + path("timed")), 0) << output();
+  EXPECT_NE(output().find("   about "), std::string::npos) << output();
+  EXPECT_NE(output().find(" steps to 3 ms\n"), std::string::npos) << output();
+  ASSERT_EQ(run("resume " + path("timed")), 0) << output();
+  EXPECT_NE(output().find(" steps to 7"), std::string::npos) << output();
+}
+
 TEST_F(StagedProgram, DrawsTheEndOfEachStage) {
   ASSERT_EQ(run("run " + path("case.toml") + " --set output.frames=1 -o " + path("out")), 0)
       << output();
