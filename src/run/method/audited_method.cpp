@@ -51,6 +51,7 @@ class AuditedMethod final : public Method {
     method_->set_stage(stage);
   }
   EnergyBalance energy() override { return method_->energy(); }
+  double rounding() const override { return method_->rounding(); }
   std::vector<double> probes() override { return method_->probes(); }
   void note_breaks() override {
     left_.reset();

@@ -95,8 +95,11 @@ class CoupledMethod final : public Method {
     all.start = a.start + b.start;
     double& largest = w_.ledger.largest;
     largest = std::max({largest, all.kinetic + all.elastic, std::fabs(all.work), all.total()});
-    if (steps() != 0) all.relate_to(largest);
+    if (steps() != 0 && largest > rounding()) all.relate_to(largest);
     return all;
+  }
+  double rounding() const override {
+    return spheres_.method->rounding() + tetrahedra_.method->rounding();
   }
   std::vector<double> probes() override {
     const std::vector<double> of_spheres = spheres_.method->probes(),

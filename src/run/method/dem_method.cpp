@@ -14,6 +14,7 @@
 #include "dem/stepping/step.hpp"
 #include "run/method/dem_tables.hpp"
 #include "run/method/emission_table.hpp"
+#include "run/method/energy_of_rounding.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -49,6 +50,9 @@ struct DemSim {
 
   static World made(const dem::Config& config, const dem::Model& model, const Exec& exec) {
     return dem::make_world(config, model, exec);
+  }
+  static double rounding(const dem::Model& model, const World& w) {
+    return energy_of_rounding(w.elements.mass, model.position, w.next_dt);
   }
   /// How many states of servos a run of the case keeps.
   static std::size_t servos_of(const Config& config) { return servo_count(config); }

@@ -11,6 +11,7 @@
 #include "fdem_shared/fluid/gas_source.hpp"
 #include "fdem_shared/joint_stages.hpp"
 #include "fdem_shared/shape.hpp"
+#include "run/method/energy_of_rounding.hpp"
 #include "run/method/loose_array.hpp"
 #include "run/method/sim_method.hpp"
 
@@ -30,6 +31,10 @@ struct MeshSim {
     energies(w);
     for (const ProbeConfig& p : config.probes) probe(w, p);  // refuses what cannot be read
     return w;
+  }
+  template <class Model>
+  static double rounding(const Model& model, const World& w) {
+    return corners * energy_of_rounding(Shape::elements(w).mass, model.point, w.next_dt);
   }
   /// How many states of servos a run of the case keeps.
   static std::size_t servos_of(const Config& config) { return servos_of_supports(config); }

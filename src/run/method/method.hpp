@@ -70,6 +70,9 @@ class Method {
   virtual void set_stage(const StageProgress&) {}
 
   virtual EnergyBalance energy() = 0;
+  /// Energy that rounding may have given a model so far: errors are not related to less. On rank 0.
+  /// [J]
+  virtual double rounding() const { return 0.0; }
   /// Values of the case's probes, in their order.  [SI]
   virtual std::vector<double> probes() = 0;
   /// A row of the history is written: bonds that have broken since the last one get its time.

@@ -67,6 +67,7 @@ class SimMethod final : public Method {
       : world_([&](const Exec& where) { return made(config, model, where); },
                in_precision(exec, config.precision), ranks, config.domain),
         sim_(model, world_.mesh()),
+        rounding_(Sim::rounding(model, world_.mesh())),
         probes_(config.probes),
         lagging_(config.probes),
         case_(config),
@@ -153,17 +154,16 @@ class SimMethod final : public Method {
     if constexpr (requires(World & w) { Sim::begun(w); })
       at_once(world_.ranks(), [&] { Sim::begun(world_.part()); });
   }
-
   EnergyBalance energy() override { return balance_of(energies_of_all()); }
-  /// On rank 0.
-  EnergyBalance balance_of(const Energies& all) {
+  EnergyBalance balance_of(const Energies& all) {  // on rank 0
     if (!leads(world_.ranks())) return {};
     EnergyBalance now = Sim::balance(world_.ledger(), all, steps());
-    if (spent_.all == 0.0) return now;
     now.fracture += spent_.all;
-    if (steps() != 0) now.relate_to(world_.ledger().largest);
+    if (spent_.all != 0.0 && steps() != 0) now.relate_to(world_.ledger().largest);
+    if (world_.ledger().largest <= rounding()) now.error_relative = now.contact_relative = 0.0;
     return now;
   }
+  double rounding() const override { return rounding_ * static_cast<double>(steps()); }
   std::vector<double> probes() override {
     std::vector<double> values = read_now(probes_);
     lagging_.tell(values);
@@ -480,7 +480,6 @@ class SimMethod final : public Method {
            std::any_of(case_.stages.begin(), case_.stages.end(),
                        [](const auto& stage) { return stage.gravity.is_table(); });
   }
-
   /// Parts of ranks lead to copies, too: only the whole is looked at.
   void look_at_places() const {
     if (single_rank()) require_places(world_.part());
@@ -489,6 +488,7 @@ class SimMethod final : public Method {
 
   SharedWorld<World> world_;
   Sim sim_;
+  double rounding_;  ///< energy of a step's  [J]
   std::vector<ProbeConfig> probes_;
   LaggingProbes lagging_;
   Config case_;
