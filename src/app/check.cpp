@@ -115,8 +115,11 @@ struct CheckCommand {
           refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
           std::optional<Forecast> expected;  // may refuse the case
           if (!read.model) expected = forecast_of(config, read);
-          if (expected && !model && is_soon_built(*expected) && scripts_of(read).empty())
-            built = method_to_look_at(read);  // what run refuses of a mesh or packing is refused
+          // Built before it is called good: what run refuses of a mesh or packing is refused.
+          if (model || (expected && is_soon_built(*expected) && scripts_of(read).empty()))
+            built = method_to_look_at(read);
+          if (expected && built != nullptr)
+            expected = forecast_of(config, read, {built->time_step(), built->step_rule()});
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                      counted(bodies_of(config), "body", "bodies"),
                      counted(materials_of(config), "material", "materials"),
@@ -142,15 +145,15 @@ struct CheckCommand {
           if (expected) tell_forecast(*expected);
         },
         read.config);
-    if (model) tell_of_model(read);
+    if (model) tell_of_model(*built, read);
     if (built != nullptr) tell_warnings(*built, read);
   }
 
   /// Faults that specimens of its bodies show are told with file and lines.
   template <class Config>
-  static Forecast forecast_of(const Config& config, const Case& read) {
+  static Forecast forecast_of(const Config& config, const Case& read, const ModelStep& model = {}) {
     try {
-      return forecast(config, read.folder);
+      return forecast(config, read.folder, model);
     } catch (const InputError& error) {
       if (read.file.empty()) throw;
       throw InputError(with_lines(error.what(), read.file));
@@ -247,6 +250,27 @@ struct CheckCommand {
     return (seconds < 1.0 ? "" : "about ") + rough_duration(seconds);
   }
 
+  /// A bound of its steps by what it does not know.
+  static const char* bound_of(const Forecast& f) {
+    if (f.may_end_early && f.cut_by_lines) return "";
+    return f.may_end_early ? "at most " : f.cut_by_lines ? "at least " : "";
+  }
+  static void tell_steps(const Forecast& f) {
+    fmt::print("  step    {}{}, ruled by\n          {}\n",
+               f.of_model       ? ""
+               : f.cut_by_lines ? "at most about "
+                                : "about ",
+               short_time(f.step), harmless(f.step_rule));
+    if (f.cut_by_lines)
+      fmt::print(
+          "          often a fifth of it and less where lines cut small elements:\n"
+          "          check --model tells\n");
+    fmt::print("  steps   {}{}, {}\n", bound_of(f), about(f.steps),
+               f.cut_by_lines    ? "more by as much as its step is shorter"
+               : f.may_end_early ? "since its stages may end it early"
+                                 : "more as bodies meet and break");
+  }
+
   static void tell_forecast(const Forecast& f) {
     if (f.items == 0.0) {
       fmt::print("  size    known when bodies are meshed or filled: check --model\n");
@@ -254,14 +278,12 @@ struct CheckCommand {
     }
     fmt::print("  size    {}", about_so_many(f.items, f.item_name));
     if (f.bonds > 0.0) fmt::print(", {}", about_so_many(f.bonds, f.bond_name));
-    fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
-               harmless(f.step_rule));
-    const char* const at_most = f.may_end_early ? "at most " : "";
-    fmt::print(
-        "  steps   {}{}, {}\n", at_most, about(f.steps),
-        f.may_end_early ? "since its stages may end it early" : "more as bodies meet and break");
-    fmt::print("  time    {}{} here ({})", at_most,
-               about_duration(f.setup_s + f.here_s + f.output_s),
+    fmt::print("\n");
+    tell_steps(f);
+    const double all = f.setup_s + f.here_s + f.output_s;
+    const std::string here =  // "at least under 1 s" would bound nothing
+        f.cut_by_lines && all < 1.0 ? fmt::format("about {:.1g} s", all) : about_duration(all);
+    fmt::print("  time    {}{} here ({})", bound_of(f), here,
                counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"));
     if (f.setup_s >= 1.0) fmt::print(", {} of it set-up", rough_duration(f.setup_s));
     if (f.output_s >= 1.0) fmt::print(", {} of it output", rough_duration(f.output_s));
@@ -319,16 +341,14 @@ struct CheckCommand {
       read_case<dem::Config>(source, overrides);
   }
 
-  static void tell_of_model(const Case& read) {
-    const std::unique_ptr<Method> method = method_to_look_at(read);
-    const std::string rule = method->step_rule();
-    fmt::print("  step {:.3g} s{}\n", method->time_step(), rule.empty() ? "" : " ruled by " + rule);
-    for (const Fact& fact : method->facts()) {
+  static void tell_of_model(Method& method, const Case& read) {
+    const std::string rule = method.step_rule();
+    fmt::print("  step {:.3g} s{}\n", method.time_step(), rule.empty() ? "" : " ruled by " + rule);
+    for (const Fact& fact : method.facts()) {
       if (fact.path.starts_with("model.added_mass."))
         fmt::print("  {} {:.4g}\n", fact.path.substr(6), fact.value);
       if (fact.path.starts_with("model.rock.")) tell_of_rock(fact, read);
     }
-    tell_warnings(*method, read);
   }
   /// The modulus that the case gives a material of triangles or tetrahedra, 0: none  [Pa], and the
   /// material of the program that it uses.

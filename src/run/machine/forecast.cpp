@@ -321,7 +321,7 @@ fdem::BodyConfig plate_of(const fdem::BodyConfig& body, const Meshed& mesh, doub
 
 }  // namespace
 
-Forecast forecast(const dem::Config& config, const std::string& folder) {
+Forecast forecast(const dem::Config& config, const std::string& folder, const ModelStep& model) {
   Forecast f;
   double pace = 0.0;  // of all items, each step  [s]
   double facets = 0.0;
@@ -342,7 +342,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
     if (is_ldpm(config, body)) facets += f.bonds - bonds;
   }
   pace += add_few(f, config, few, folder);
-  finish(f, config.time, end_of(config.stages, config.time.end));
+  finish(f, config.time, end_of(config.stages, config.time.end), model);
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
   if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
   f.may_end_early = may_end_early(config.stages);
@@ -354,7 +354,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
   return f;
 }
 
-Forecast forecast(const fdem::Config& config, const std::string& folder) {
+Forecast forecast(const fdem::Config& config, const std::string& folder, const ModelStep& known) {
   Forecast f;
   f.item_name = "triangles";
   f.bond_name = "joints";
@@ -390,7 +390,8 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   const std::string rule = method->step_rule();
   take_step(f, (free_mesh ? least_of_free_mesh : 1.0) * method->time_step(),
             (rule.empty() ? "triangles" : rule) + " (finest mesh: " + of + ")");
-  finish(f, config.time, end_of(config.stages, config.time.end));
+  f.cut_by_lines = free_mesh && (!config.joint_sets.empty() || config.discontinuities.size() > 1);
+  finish(f, config.time, end_of(config.stages, config.time.end), known);
   // Bodies that press on each other cost contacts, which specimens lack.
   const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
   f.here_s =

@@ -2,9 +2,11 @@
 
 namespace breccia {
 
-Forecast forecast(const coupled::Config& config, const std::string& folder) {
+Forecast forecast(const coupled::Config& config, const std::string& folder,
+                  const ModelStep& model) {
   const coupled::Parts parts = coupled::parts_of(config);
-  const Forecast a = forecast(parts.spheres, folder), b = forecast(parts.tetrahedra, folder);
+  const Forecast a = forecast(parts.spheres, folder, model),
+                 b = forecast(parts.tetrahedra, folder, model);
   Forecast f;
   f.item_name = "spheres and tetrahedra";
   f.bond_name = "links and joints";
@@ -13,7 +15,8 @@ Forecast forecast(const coupled::Config& config, const std::string& folder) {
   f.bonds = a.bonds + b.bonds;
   take_step(f, a.step, a.step_rule);
   take_step(f, b.step, b.step_rule);
-  finish(f, config.time, config.time.end);
+  f.cut_by_lines = b.cut_by_lines;
+  finish(f, config.time, config.time.end, model);
   // Both take the steps of the one that needs more.
   for (const Forecast* part : {&a, &b}) {
     if (part->steps > 0.0) f.here_s += part->here_s * (f.steps / part->steps);

@@ -74,7 +74,7 @@ double step_of_flattest(fdem3::Config specimen, const std::string& folder) {
 
 }  // namespace
 
-Forecast forecast(const fdem3::Config& config, const std::string& folder) {
+Forecast forecast(const fdem3::Config& config, const std::string& folder, const ModelStep& known) {
   Forecast f;
   f.item_name = "tetrahedra";
   f.bond_name = "joints";
@@ -107,7 +107,8 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   const std::string rule = method->step_rule();
   take_step(f, free_mesh ? step_of_flattest(specimen, folder) : method->time_step(),
             (rule.empty() ? "tetrahedra" : rule) + " (finest mesh: " + of + ")");
-  finish(f, config.time, end_of(config.stages, config.time.end));
+  f.cut_by_lines = free_mesh && (!config.joint_sets.empty() || config.discontinuities.size() > 1);
+  finish(f, config.time, end_of(config.stages, config.time.end), known);
   // Bodies that press on each other and joints that broke cost contacts, which specimens lack.
   const double contacts = config.bodies.size() > 1 || f.bonds > 0.0 ? 1.5 : 1.0;
   f.here_s =

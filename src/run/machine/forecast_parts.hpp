@@ -156,8 +156,15 @@ inline void take_step(Forecast& f, double step, const std::string& rule) {
   }
 }
 
-/// @param end  of the last stage  [s]
-inline void finish(Forecast& f, const TimeConfig& time, double end) {
+/// @param end    of the last stage  [s]
+/// @param model  its step is taken in place of that of specimens
+inline void finish(Forecast& f, const TimeConfig& time, double end, const ModelStep& model) {
+  if (model.step > 0.0) {
+    f.of_model = true;
+    f.cut_by_lines = false;
+    f.step = model.step;
+    f.step_rule = (model.rule.empty() ? f.item_name : model.rule) + " of the model as it is set up";
+  }
   if (f.step == 0.0 || f.step > time.max_step) take_step(f, time.max_step, "time.max_step");
   if (f.step > 0.0) f.steps = std::ceil(end / f.step);
 }

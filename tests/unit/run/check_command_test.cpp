@@ -258,6 +258,29 @@ TEST(CheckCommand, of_the_model_names_the_corner_nearest_to_an_empty_region) {
   EXPECT_TRUE(has(told.text, "holds no corner of any triangle; the nearest, at (-0.1"))
       << told.text;
   EXPECT_TRUE(has(told.text, " m, is 0.001 m away")) << told.text;
+  EXPECT_FALSE(has(told.text, ": good")) << told.text;
+}
+
+TEST(CheckCommand, of_the_model_foresees_its_own_steps) {
+  const ScratchFolder folder;
+  replace_file(folder / "beam.toml", beam);
+  const Told told = told_by(folder, "check --model " + (folder / "beam.toml"));
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_FALSE(has(told.text, "step    about")) << told.text;
+  EXPECT_TRUE(has(told.text, "joints of the model as it is set up")) << told.text;
+}
+
+TEST(CheckCommand, does_not_bound_the_steps_of_joints_that_cut_a_mesh) {
+  const ScratchFolder folder;
+  const std::string slope = source_dir + std::string("/cases/dfn_slope/case.toml");
+  const Told told = told_by(folder, "check " + slope);
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_TRUE(has(told.text, "  step    at most about ")) << told.text;
+  EXPECT_TRUE(has(told.text, "check --model tells")) << told.text;
+  EXPECT_TRUE(has(told.text, "  steps   at least about ")) << told.text;
+  EXPECT_TRUE(has(told.text, "  time    at least ")) << told.text;
+  const Told ended = told_by(folder, "check " + slope + " --set stage.stand.rest=1e-6");
+  EXPECT_TRUE(has(ended.text, "  steps   about ")) << ended.text;
 }
 
 TEST(CheckCommand, fix_writes_the_case_with_slips_corrected_and_checks_that) {

@@ -149,6 +149,41 @@ TEST(Forecast, ends_with_the_last_of_stages_that_end_by_time_and_says_when_other
   EXPECT_TRUE(forecast(config, folder).may_end_early);
 }
 
+/// The smallest triangle between lines rules their mesh, which specimens have none of.
+TEST(Forecast, of_lines_in_a_free_mesh_is_a_bound_until_a_model_tells_its_step) {
+  const std::string folder = std::string(source_dir) + "/cases/dfn_slope";
+  auto config = read_case<fdem::Config>(folder + "/small.toml", {});
+  const Forecast before = forecast(config, folder);
+  EXPECT_TRUE(before.cut_by_lines);
+  EXPECT_FALSE(before.of_model);
+  const Forecast f = forecast(config, folder, {33.4e-6, "contact"});
+  EXPECT_EQ(f.step, 33.4e-6);
+  EXPECT_TRUE(has(f.step_rule, "contact of the model")) << f.step_rule;
+  EXPECT_NEAR(f.steps, 0.8 / 33.4e-6, 1.0);
+  EXPECT_GT(f.here_s, 2.0 * before.here_s);
+  EXPECT_GT(f.gpu_s, 2.0 * before.gpu_s);
+  EXPECT_FALSE(f.cut_by_lines);
+  config.joint_sets.clear();
+  EXPECT_FALSE(forecast(config, folder).cut_by_lines);
+  config.discontinuities.resize(2);
+  EXPECT_TRUE(forecast(config, folder).cut_by_lines);
+  const std::string prism = std::string(source_dir) + "/cases/jointed_prism";
+  auto solid = read_case<fdem3::Config>(prism + "/small.toml", {});
+  EXPECT_TRUE(forecast(solid, prism).cut_by_lines);
+  EXPECT_EQ(forecast(solid, prism, {0.2e-6, "joints"}).step, 0.2e-6);
+  solid.bodies.front().structured = true;
+  EXPECT_FALSE(forecast(solid, prism).cut_by_lines);
+}
+
+TEST(Forecast, of_spheres_takes_the_step_of_their_model) {
+  const std::string path = std::string(source_dir) + "/cases/ldpm_cube/small.toml";
+  const auto config = read_case<dem::Config>(path, {});
+  const Forecast f = forecast(config, ".", {0.5e-6, ""});
+  EXPECT_EQ(f.step, 0.5e-6);
+  EXPECT_EQ(f.step_rule, "elements of the model as it is set up");
+  EXPECT_NEAR(f.steps, config.time.end / 0.5e-6, 1.0);
+}
+
 /// Whatever its joints meet: the specimen that is timed has none of them.
 TEST(Forecast, of_a_set_of_joints_in_space_does_not_depend_on_where_they_lie) {
   const std::string folder = std::string(source_dir) + "/cases/jointed_prism";
