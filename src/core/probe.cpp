@@ -33,9 +33,9 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of, std::si
   const Kind kind = named.quantity.kind;
   if ((named.of & of) == 0) {
     if (of == in_plane && named.quantity.axis >= 0)
-      add(".quantity: \"" + p.quantity +
-          "\" (it is also taken if none is given) has a z, which a plane case lacks; allowed: " +
-          allowed(of));
+      add(".quantity = \"" + p.quantity + "\"" +
+          (p.quantity == ProbeConfig{}.quantity ? " (taken if none is given)" : "") +
+          " has a z, which a plane case lacks; allowed: " + allowed(of));
     else
       add(".quantity = \"" + p.quantity + "\" is none " +
           (of == of_wall    ? "of a wall"

@@ -200,6 +200,7 @@ TEST(TurningSupports, go_on_in_a_stage_from_where_they_are) {
 TEST(TurningSupports, that_do_not_hold_what_they_turn_are_problems) {
   fdem::testing::Scene plane = plate();
   plane.config.supports[0].fix = {"x"};
+  plane.config.supports[0].velocity = Vec2{};
   const std::vector<std::string> said = fdem::stage_problems(plane.config);
   ASSERT_EQ(said.size(), 1U);
   EXPECT_EQ(said[0], "support.grip.spin moves what it holds along y, which it does not fix");
@@ -207,11 +208,11 @@ TEST(TurningSupports, that_do_not_hold_what_they_turn_are_problems) {
   fdem3::testing::Scene solid = block();
   fdem3::SupportConfig& grip = solid.config.supports[0];
   grip.fix = {"x", "y"};
+  grip.velocity = Vec3{};
   EXPECT_TRUE(fdem3::stage_problems(solid.config).empty());
   grip.spin = Vec3{0.0, 5.0, 0.0};
   ASSERT_EQ(fdem3::stage_problems(solid.config).size(), 1U);
   grip.fix = {"x", "y", "z"};
-  grip.velocity = Vec3{};
   grip.servo.force = 1e3;
   grip.servo.speed = 1.0;
   grip.servo.axis = "y";

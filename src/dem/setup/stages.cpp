@@ -8,6 +8,7 @@
 
 #include "core/named.hpp"
 #include "core/set_up.hpp"
+#include "core/unused_motion.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
@@ -93,6 +94,19 @@ std::ptrdiff_t directions_of(const SupportConfig& s) {
              [](const std::string& word) { return word == "x" || word == "y" || word == "z"; }) +
          3 * std::count(s.fix.begin(), s.fix.end(), "all");
 }
+
+/// Velocities along what is not fixed, and ramps that lead nothing.
+void add_motion_problems(const Config& config, const Config& now, std::size_t stage,
+                         std::vector<std::string>& problems) {
+  each_given_motion(config, now, stage, [&](const SupportConfig& s, const std::string& where) {
+    if (!s.absorbs() && !s.pushes() && !s.servo.is_on())
+      add_unfixed(where, s.fix, s.velocity, problems);
+    if (s.ramp > 0.0 && !breccia::is_given(s.velocity) && !s.pushes())
+      problems.push_back(where + ".ramp leads nothing: " +
+                         (s.servo.is_on() ? "a servo's force grows by a table of its own"
+                                          : "the support has no velocity and no force"));
+  });
+}
 }  // namespace
 
 std::vector<std::string> stage_problems(const Config& config) {
@@ -141,6 +155,7 @@ std::vector<std::string> stage_problems(const Config& config) {
     progress.index = static_cast<std::int32_t>(k);
     const Config now = config_at(config, progress);
     const std::string stage = config.stages.empty() ? "" : "stage." + config.stages[k].name + ": ";
+    add_motion_problems(config, now, k, problems);
     for (const WallConfig& wall : now.walls)
       servo(stage + "wall." + wall.name, wall.servo, wall.velocity);
     for (const SupportConfig& s : now.supports) {

@@ -10,6 +10,7 @@
 
 #include "core/most_names.hpp"
 #include "core/named.hpp"
+#include "core/unused_motion.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/materials.hpp"
 
@@ -148,7 +149,26 @@ class CaseRules {
       check_one_table("load." + l.name + ".traction", l.traction, l.history);
       check_one_table("load." + l.name + ".force", l.force, l.history);
       if (!l.dug_by.empty()) check_dug("load." + l.name + ".dug_by", l);
+      check_kind("load." + l.name, l.kind, l);
     }
+    for (const auto& stage : config_.stages)
+      for (const auto& change : stage.loads)
+        for (const auto& l : config_.loads)
+          if (l.name == change.name)
+            check_kind("stage." + stage.name + ".load." + l.name, l.kind, change);
+  }
+
+  /// Sizes that its kind does not use. Fluids have a pressure, and rules of their own.
+  template <class Load>
+  void check_kind(const std::string& where, const std::string& kind, const Load& load) {
+    const auto look = [&](const std::string& key, bool given) {
+      if (given && kind != key)
+        add(where + "." + key + " has no use: the load is of kind \"" + kind + "\"; kind = \"" +
+            key + "\" takes it");
+    };
+    if (kind != "fluid") look("pressure", is_given(load.pressure));
+    look("traction", is_given(load.traction));
+    look("force", is_given(load.force));
   }
 
   template <class Load>

@@ -10,6 +10,7 @@
 
 #include "core/case_config.hpp"
 #include "core/gauge.hpp"
+#include "core/most_steps.hpp"
 #include "exec/error.hpp"
 #include "exec/filling.hpp"
 #include "fdem_shared/observe.hpp"
@@ -225,18 +226,25 @@ void set_up_starts(World& w, const Config& config, const Model& model) {
   copy_to(given.starts, starts);
 }
 
-/// No machine takes more steps than this, and time, a sum of them, would stop.
+/// Refuses steps of which nobody can take as many as the case needs. That of time.max_step is
+/// looked at before.
 template <class World>
 void refuse_endless(const World& w) {
-  constexpr double most = 1e15;
+  const TimeConfig& time = w.given->time;
   const RuledStep least = ruled_step(w, true);
-  const double dt = std::min(w.next_dt, w.given->time.safety * least.step);
-  if (dt * most > w.given->time.end) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
-                "steps away; see the densities, moduli and stiffnesses of the materials",
-                dt, least.term, w.given->time.end);
+  const double dt = std::min(w.next_dt, time.safety * least.step);
+  if (dt * most_steps > time.end) return;
+  char text[300];
+  if (least.step * most_steps > time.end)
+    std::snprintf(text, sizeof text,
+                  "time.safety = %.3g of the stable time step, %.3g s: time.end = %.3g s is more "
+                  "than 1e15 steps away",
+                  time.safety, least.step, time.end);
+  else
+    std::snprintf(text, sizeof text,
+                  "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than "
+                  "1e15 steps away; see the densities, moduli and stiffnesses of the materials",
+                  dt, least.term, time.end);
   throw InputError(text);
 }
 

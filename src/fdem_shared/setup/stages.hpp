@@ -7,6 +7,7 @@
 
 #include "core/named.hpp"
 #include "core/stages.hpp"
+#include "core/unused_motion.hpp"
 #include "fdem_shared/setup/config.hpp"
 #include "fdem_shared/setup/over_time.hpp"
 
@@ -130,12 +131,6 @@ void add_turn_problems(const Config& now, const std::string& stage,
   }
 }
 
-/// Whether a quantity is given at all.
-template <class Value>
-bool is_given(const OverTime<Value>& quantity) {
-  return quantity.is_table() || squared(quantity.value) > 0.0;
-}
-
 /// Problems of bodies that forces move, of a case as it is in a stage.
 template <class Config>
 void add_free_problems(const Config& now, const std::string& stage,
@@ -229,6 +224,21 @@ void add_begin_problems(const Config& config, const Config& now, std::size_t sta
   }
 }
 
+/// Velocities along what is not fixed, and ramps and tables of factors that lead nothing.
+template <class Config>
+void add_motion_problems(const Config& config, const Config& now, std::size_t stage,
+                         std::vector<std::string>& problems) {
+  each_given_motion(config, now, stage, [&](const auto& s, const std::string& where) {
+    if (!s.is_free() && !s.servo.is_on()) add_unfixed(where, s.fix, s.velocity, problems);
+    if (is_given(s.velocity) || is_given(s.spin) || is_given(s.force) || is_given(s.torque)) return;
+    const char* const none = s.servo.is_on()
+                                 ? " leads nothing: a servo's force grows by a table of its own"
+                                 : " leads nothing: the support has no velocity and no spin";
+    if (s.history.ramp > 0.0) problems.push_back(where + ".ramp" + none);
+    if (!s.history.times.empty()) problems.push_back(where + ".times" + none);
+  });
+}
+
 /// Problems of the stages of a case, as sentences, each once.
 /// @param config_at  config_at(config, progress): the case in a stage
 template <class Config, class At>
@@ -248,6 +258,7 @@ std::vector<std::string> problems_of_stages(const Config& config,
     add_turn_problems(now, stage, problems);
     add_free_problems(now, stage, directions, problems);
     add_begin_problems(config, now, k, problems);
+    add_motion_problems(config, now, k, problems);
   }
   return problems;
 }

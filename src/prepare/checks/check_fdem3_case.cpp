@@ -33,16 +33,12 @@ class TetCaseChecks {
     }
     for (const fdem3::SupportConfig& s : config.supports)
       check_region("support." + s.name, s.region);
-    for (const fdem3::LoadConfig& l : config.loads) {
-      check_region("load." + l.name, l.region);
-      check_kind("load." + l.name, l.kind, l);
-    }
+    for (const fdem3::LoadConfig& l : config.loads) check_region("load." + l.name, l.region);
     fdem_shared::check_fluids(config, problems_);
     fdem_shared::check_gas(config, problems_);
     fdem_shared::add_probe_problems(config, in_solid, 3, problems_);
     for (const std::string& problem : fdem3::bolt_problems(config)) add(problem);
     for (const std::string& problem : fdem3::stage_problems(config)) add(problem);
-    for (const fdem3::StageConfig& stage : config.stages) check(stage);
   }
   std::vector<std::string> problems_;
 
@@ -65,26 +61,6 @@ class TetCaseChecks {
   void check_region(const std::string& where, const fdem3::RegionConfig& r) {
     if (!r.around.empty() && !(r.radius > 0.0) && r.polygon.empty())
       add(where + ".around: a cylinder needs a radius above 0");
-  }
-
-  /// A quantity that its kind does not use.
-  template <class Load>
-  void check_kind(const std::string& where, const std::string& kind, const Load& load) {
-    const auto is_zero = [](const Vec3& v) { return norm(v) == 0.0; };
-    const auto look = [&](const char* key, bool given) {
-      if (given && kind != key)
-        add(fmt::format("{}.{} has no use: the load is of kind \"{}\"", where, key, kind));
-    };
-    if (kind != "fluid") look("pressure", load.pressure.is_table() || load.pressure.value != 0.0);
-    look("traction", load.traction.is_table() || !is_zero(load.traction.value));
-    look("force", load.force.is_table() || !is_zero(load.force.value));
-  }
-
-  void check(const fdem3::StageConfig& stage) {
-    for (const fdem3::LoadChange& change : stage.loads)
-      for (const fdem3::LoadConfig& load : config_.loads)
-        if (load.name == change.name)
-          check_kind("stage." + stage.name + ".load." + change.name, load.kind, change);
   }
 
   const fdem3::Config& config_;
