@@ -14,13 +14,13 @@ namespace {
 
 /// "body.pile.size needs ..." of a part as "spheres.body.pile.size needs ...",
 /// "stage.shear.wall.top ..." as "stage.shear.spheres.wall.top ..."; sentences that begin with no
-/// key as "spheres: ...". Probes stand above both parts and keep their keys.
+/// key as "spheres: ...". Probes and [time] stand above both parts and keep their keys.
 std::string of_part(const char* part, const std::string& problem,
                     const std::vector<coupled::StageConfig>& stages) {
   for (const coupled::StageConfig& stage : stages)
     if (const std::string where = "stage." + stage.name + "."; problem.starts_with(where))
       return where + part + "." + problem.substr(where.size());
-  if (problem.starts_with("probe.")) return problem;
+  if (problem.starts_with("probe.") || problem.starts_with("time.")) return problem;
   const std::string word = problem.substr(0, problem.find(' '));
   return part + std::string(word.find('.') == std::string::npos ? ": " : ".") + problem;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/most_names.hpp"
+#include "core/most_steps.hpp"
 #include "core/named.hpp"
 #include "core/probe.hpp"
 #include "dem/setup/materials.hpp"
@@ -17,6 +18,7 @@
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/check_in_situ.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/checks/shape_keys.hpp"
 #include "prepare/ldpm/body.hpp"
 #include "prepare/meshing/joint_sets.hpp"
 
@@ -31,6 +33,15 @@ void check_added_mass(const Config& config, std::vector<std::string>& problems) 
       problems.push_back(
           "time.added_mass is for triangles and tetrahedra, whose steps a few slivers may rule; "
           "time.mass_scaling makes all spheres heavier");
+}
+
+/// Steps that are so short that the end is never reached.
+void check_time(const TimeConfig& time, std::vector<std::string>& problems) {
+  if (time.max_step * most_steps > time.end) return;
+  problems.push_back(fmt::format(
+      "time.max_step = {:.3g} s: time.end = {:.3g} s is more than 1e15 steps away; {:.2g} s is the "
+      "least that is allowed here, and steps are as short as the case needs without it",
+      time.max_step, time.end, 1.1 * time.end / most_steps));
 }
 
 /// A body that flies would have time.mass_scaling times its kinetic energy.
@@ -61,6 +72,8 @@ class Check {
   explicit Check(const Config& config) : config_(config) {
     for (const MaterialConfig& m : config_.materials) check(m);
     for (const std::string& problem : prepare::body_problems(config)) add(problem);
+    for (const BodyConfig& b : config.bodies)
+      for (const std::string& problem : prepare::keys_of_other_shapes(b)) add(problem);
     for (const std::string& problem : prepare::overlap_problems(config.bodies)) add(problem);
     for (const WallConfig& w : config_.walls) {
       for (const std::string& problem : wall_problems(w)) add(problem);
@@ -72,6 +85,7 @@ class Check {
     add_too_many(config_.walls.size() + config_.supports.size(), "walls and supports", problems_);
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
+    check_time(config_.time, problems_);
     check_mass_scaling(config_, problems_);
     check_added_mass(config_, problems_);
     for (const std::string& problem : stage_problems(config)) add(problem);
@@ -252,10 +266,13 @@ void check_case(const Config& config) {
        {prepare::body_problems(config.bodies, config.discontinuities, names_of(config)),
         prepare::overlap_problems(config.bodies)})
     problems.insert(problems.end(), more.begin(), more.end());
+  for (const BodyConfig& b : config.bodies)
+    for (const std::string& problem : prepare::keys_of_other_shapes(b)) problems.push_back(problem);
   for (const std::string& problem : prepare::soft_problems(config)) problems.push_back(problem);
   for (const JointSetConfig& set : config.joint_sets)
     for (const std::string& problem : prepare::joint_set_problems(set, names_of(config).joints))
       problems.push_back(problem);
+  check_time(config.time, problems);
   check_mass_scaling(config, problems);
   check_added_mass(config, problems);
   prepare::refuse(problems, "in the case");
@@ -268,6 +285,7 @@ namespace fdem3 {
 void check_case(const Config& config) {
   std::vector<std::string> problems = prepare::case_problems(config);
   for (const std::string& problem : prepare::soft_problems(config)) problems.push_back(problem);
+  check_time(config.time, problems);
   check_mass_scaling(config, problems);
   check_added_mass(config, problems);
   prepare::refuse(problems, "in the case");

@@ -7,6 +7,7 @@
 #include "core/most_names.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
+#include "prepare/checks/shape_keys.hpp"
 #include "prepare/tetrahedra/joint_discs.hpp"
 #include "prepare/tetrahedra/tet_body.hpp"
 
@@ -131,7 +132,6 @@ class TetBodyChecks {
   void check(const TetBodyConfig& b) {
     require_material("material", b.material);
     if (b.shape == "part") return check_part(b);
-    require(b.of.empty(), "of names the body of a part; shape is {}", b.shape);
     const bool box = b.shape == "box", cylinder = b.shape == "cylinder",
                sphere = b.shape == "sphere", file = b.shape == "mesh" || b.shape == "stl";
     if (box)
@@ -139,10 +139,7 @@ class TetBodyChecks {
               "shape box needs size, three lengths above 0");
     if (cylinder || sphere) require(b.radius > 0.0, "shape {} needs a radius above 0", b.shape);
     if (cylinder) require(b.height > 0.0, "shape cylinder needs a height above 0");
-    require(box || norm(b.size) == 0.0, "size is of boxes; shape is {}", b.shape);
-    require(cylinder || sphere || b.radius == 0.0,
-            "radius is of cylinders and spheres; shape is {}", b.shape);
-    require(cylinder || b.height == 0.0, "height is of cylinders; shape is {}", b.shape);
+    for (const std::string& problem : keys_of_other_shapes(b)) problems_.push_back(problem);
     require(!b.is_turned() || box || cylinder || b.shape == "stl",
             "direction and across turn boxes, cylinders and STL surfaces; shape is {}", b.shape);
     require(!b.is_turned() || b.axis == "z",

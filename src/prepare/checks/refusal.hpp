@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,19 +36,24 @@ void refuse(const std::vector<std::string>& problems, const char* of) {
               problems);
 }
 
-/// Makes all checks, and refuses what any of them finds at once.
+/// Makes all checks, and refuses what any of them finds at once, each problem once.
 template <class... Checks>
 void refuse_all(const char* of, const Checks&... checks) {
   std::vector<std::string> problems;
-  bool wrong = false;  // more than files that cannot be read
+  std::set<std::string> told;  // two parts of a case may find the same
+  bool wrong = false;          // more than files that cannot be read
+  const auto add = [&](const std::vector<std::string>& found) {
+    for (const std::string& problem : found)
+      if (told.insert(problem).second) problems.push_back(problem);
+  };
   const auto collect = [&](const auto& check) {
     try {
       check();
     } catch (const Refusal& found) {
-      problems.insert(problems.end(), found.problems.begin(), found.problems.end());
+      add(found.problems);
       wrong = true;
     } catch (const Unreadable& found) {
-      problems.insert(problems.end(), found.problems.begin(), found.problems.end());
+      add(found.problems);
     }
   };
   (collect(checks), ...);

@@ -237,7 +237,10 @@ TEST(CheckDem, refuses_a_body_with_the_words_of_the_build) {
       [](Config& c) { c.bodies[0].size.y = 0.0; },
       [](Config& c) { c.bodies[0].pack.count = 0; },
       [](Config& c) { c.bodies[0].shape = "file"; },
-      [](Config& c) { c.bodies[0].shape = "element"; },
+      [](Config& c) {
+        c.bodies[0].shape = "element";
+        c.bodies[0].size = {};
+      },
       [](Config& c) { c.bodies[1].name = c.bodies[0].name; },
       [](Config& c) { c.bodies[1].material = "c30"; },
       [](Config& c) { c.bodies[1].rebar.interface_law = "c30"; },
