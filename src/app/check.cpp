@@ -29,6 +29,7 @@
 #include "prepare/checks/check_values.hpp"
 #include "run/case.hpp"
 #include "run/case_keys.hpp"
+#include "run/machine/fast_motion.hpp"
 #include "run/machine/forecast.hpp"
 #include "run/machine/memory_plan.hpp"
 #include "run/method/doubts.hpp"
@@ -142,7 +143,10 @@ struct CheckCommand {
           }
           tell_of_wide_supports(config);
           tell_of_probes(config, read);
-          if (expected) tell_forecast(*expected);
+          if (!expected) return;
+          tell_forecast(*expected);
+          for (const std::string& sentence : too_fast(config, *expected))
+            tell_warning(sentence, read);
         },
         read.config);
     if (model) tell_of_model(*built, read);
@@ -423,13 +427,15 @@ struct CheckCommand {
       fmt::print("  {} with its joints: {} {:.6g}\n", harmless(whose), word, fact.value);
   }
   static void tell_warnings(Method& method, const Case& read) {
+    for (const std::string& warning : doubts_of(method, read.common().time.end))
+      tell_warning(warning, read);
+  }
+  static void tell_warning(const std::string& warning, const Case& read) {
     std::fflush(stdout);
-    for (const std::string& warning : doubts_of(method, read.common().time.end)) {
-      const std::string text =
-          fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
-                      harmless(read.file.empty() ? warning : with_lines(warning, read.file)));
-      std::fputs(fitting(text, 2, stderr).c_str(), stderr);
-    }
+    const std::string text =
+        fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
+                    harmless(read.file.empty() ? warning : with_lines(warning, read.file)));
+    std::fputs(fitting(text, 2, stderr).c_str(), stderr);
   }
 };
 

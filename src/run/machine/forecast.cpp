@@ -169,6 +169,7 @@ double add_few(Forecast& f, const dem::Config& config, const std::vector<dem::Bo
             fmt::format("{} of {}{}: elements of radius {}",
                         model.links.empty() ? "contacts" : "links", bodies.front().name,
                         bodies.size() > 1 ? " and others" : "", length_text(least_radius(model))));
+  take_size(f, least_radius(model), "radius");
   f.items += count;
   f.bonds += static_cast<double>(model.links.size());
   return pace_of(*method, count) * count;
@@ -193,6 +194,7 @@ double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
   const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
   const double step = method->time_step();
   const double pace = pace_of(*method, count);
+  take_size(f, least_radius(model), "radius");
   const std::string of = p.body.name + ": elements of radius " + length_text(least_radius(model));
   take_step(f, step, (bonds > 0.0 ? "links of " : "contacts of ") + of);
   f.bonds += bonds * p.count;
@@ -388,6 +390,7 @@ Forecast forecast(const fdem::Config& config, const std::string& folder, const M
   // The smallest triangle and sharpest corner of a free mesh rule its step.
   constexpr double least_of_free_mesh = 0.75;
   const std::string rule = method->step_rule();
+  take_size(f, finest, "edge");
   take_step(f, (free_mesh ? least_of_free_mesh : 1.0) * method->time_step(),
             (rule.empty() ? "triangles" : rule) + " (finest mesh: " + of + ")");
   f.cut_by_lines = free_mesh && (!config.joint_sets.empty() || config.discontinuities.size() > 1);

@@ -16,8 +16,10 @@ struct Forecast {
   double items = 0.0;  ///< elements, triangles or tetrahedra; 0: only the mesh program tells
   double bonds = 0.0;  ///< links or joints at the start
   const char *item_name = "elements", *bond_name = "links";
-  double step = 0.0;           ///< 0: nothing rules it at the start  [s]
-  std::string step_rule;       ///< "joints of beam (mesh_size 5 mm)"
+  double step = 0.0;      ///< 0: nothing rules it at the start  [s]
+  std::string step_rule;  ///< "joints of beam (mesh_size 5 mm)"
+  double least = 0.0;     ///< size of the smallest element: a radius or an edge  [m]
+  const char* least_name = "radius";
   double steps = 0.0;          ///< to time.end
   double here_s = 0.0;         ///< wall time of the steps on all processors of this machine  [s]
   double output_s = 0.0;       ///< rows, frames and pictures, besides  [s]

@@ -15,6 +15,8 @@ Forecast forecast(const coupled::Config& config, const std::string& folder,
   f.bonds = a.bonds + b.bonds;
   take_step(f, a.step, a.step_rule);
   take_step(f, b.step, b.step_rule);
+  take_size(f, a.least, a.least_name);
+  take_size(f, b.least, b.least_name);
   f.cut_by_lines = b.cut_by_lines;
   finish(f, config.time, config.time.end, model);
   // Both take the steps of the one that needs more.

@@ -105,6 +105,7 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder, const 
   const fdem3::Model model = build_model(specimen, folder);
   const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
   const std::string rule = method->step_rule();
+  take_size(f, finest, "edge");
   take_step(f, free_mesh ? step_of_flattest(specimen, folder) : method->time_step(),
             (rule.empty() ? "tetrahedra" : rule) + " (finest mesh: " + of + ")");
   f.cut_by_lines = free_mesh && (!config.joint_sets.empty() || config.discontinuities.size() > 1);

@@ -156,6 +156,13 @@ inline void take_step(Forecast& f, double step, const std::string& rule) {
   }
 }
 
+/// Sizes of elements: the least of all counts.
+inline void take_size(Forecast& f, double size, const char* name) {
+  if (!(size > 0.0) || (f.least > 0.0 && size >= f.least)) return;
+  f.least = size;
+  f.least_name = name;
+}
+
 /// @param end    of the last stage  [s]
 /// @param model  its step is taken in place of that of specimens
 inline void finish(Forecast& f, const TimeConfig& time, double end, const ModelStep& model) {

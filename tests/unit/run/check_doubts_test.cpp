@@ -106,6 +106,19 @@ size = ["0.1 m", "0.1 m", "0.1 m"]
 pack = { count = 300 }
 )";
 
+TEST_F(Doubts, tell_of_what_passes_an_element_within_a_step) {
+  const auto check = [&](const std::string& text) { return told_by("check", text).text; };
+  EXPECT_FALSE(has(check(packed + "velocity = [0, 0, -30]\n"), "it goes"));
+  const std::string fast = check(packed + "velocity = [0, 0, -30e3]\n");
+  EXPECT_TRUE(has(fast, "line 15, body.block.velocity: with 30000 m/s it goes ")) << fast;
+  EXPECT_TRUE(has(fast, " further than the radius of the smallest element, ")) << fast;
+  const std::string led = rock + "[[stage]]\nname = \"a\"\n[[stage.support]]\nname = \"left\"\n";
+  EXPECT_FALSE(has(check(led + "velocity = [10, 0]\n"), "it goes"));
+  const std::string slow = check(led + "velocity = [[0, 0, 0], [1, 1e6, 0]]\n");
+  EXPECT_TRUE(has(slow, "line 25, stage.a.support.left.velocity: with 1e+06 m/s it goes ")) << slow;
+  EXPECT_TRUE(has(slow, " further than the edge of the smallest element, 200 mm: ")) << slow;
+}
+
 TEST_F(Doubts, tell_of_tools_that_begin_inside_of_a_body) {
   const std::string ball =
       "[[wall]]\nname = \"ball\"\nshape = \"sphere\"\nradius = \"1 mm\"\npoint = [";
