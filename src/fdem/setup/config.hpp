@@ -111,7 +111,7 @@ struct MaterialConfig {
         "material of the program whose numbers it has (breccia materials); keys that stand here "
         "take their place; empty: none");
     key("density", density, "kg/m3", Range{1e-3, 1e6}, "mass per volume");
-    key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus");
+    key("young", young, "Pa", Range{1e3, 1e15}, "Young's modulus");
     key("poisson", poisson, "-", Range{-1.0, 1.0, Open::both},
         "Poisson's ratio; below 0.5 in plane strain");
     key("damping", damping, "-", Range{0.0, 1e3},

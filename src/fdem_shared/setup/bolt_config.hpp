@@ -60,7 +60,7 @@ struct BoltConfigOf {
     if constexpr (in_plane)
       key("spacing", spacing, "m", Range{1e-6, 1e6},
           "distance between bolts across the plane: forces are divided by it");
-    key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus of its bar");
+    key("young", young, "Pa", Range{1e3, 1e15}, "Young's modulus of its bar");
     key("yield", yield, "Pa", sane_strength, "stress at which it yields, without hardening");
     key("bond_stiffness", bond_stiffness, "N/m2", Range{1.0, 1e15},
         "force along the bar, per length of one bolt and per slip of the bar against the rock");

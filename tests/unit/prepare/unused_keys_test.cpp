@@ -174,5 +174,13 @@ TEST(UnusedKeys, a_direction_that_a_plane_lacks_is_told_as_it_was_asked) {
                    "probe.f.quantity = \"velocity_z\" (taken if none is given) has a z"));
 }
 
+TEST(UnusedKeys, a_forgotten_prefix_of_a_modulus_is_outside_its_range) {
+  for (const std::string* text : {&spheres, &triangles, &tetrahedra}) {
+    std::string soft = *text;
+    soft.replace(soft.find("[material.c]\n"), 13, "[material.c]\nyoung = 26\n");
+    EXPECT_TRUE(says(soft, "material.c.young = 26 is outside [1000, "));
+  }
+}
+
 }  // namespace unused_keys_test
 }  // namespace breccia

@@ -71,7 +71,7 @@ frames = 0
 xx = 1e15
 yy = 1e15
 [material.rock]
-young = 1.0
+young = 1000.0
 joints = "none"
 [[body]]
 name = "plate"
