@@ -26,13 +26,20 @@ struct ServoConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("force", force, "N", any_number,
-        "force with which it pushes (in a plane case per metre of thickness), or a table [[t, F], "
-        "...] of it over time");
+    keys_of_servo(key, false);
+  }
+  /// @param plane  forces and masses are per metre of thickness, areas lengths
+  template <class Visit>
+  void keys_of_servo(Visit&& key, bool plane) {
+    key("force", force, plane ? "N/m or N" : "N", any_number,
+        plane ? "force with which it pushes, per metre of thickness (of 1 m where the unit is N), "
+                "or a table [[t, F], ...] of it over time"
+              : "force with which it pushes, or a table [[t, F], ...] of it over time");
     key("pressure", pressure, "Pa", any_number,
         "pressure on `area`, added to the force, or a table [[t, p], ...] of it over time");
-    key("area", area, "m2", not_negative,
-        "area that the pressure acts on; in a plane case the number is a length");
+    key("area", area, plane ? "m or m2" : "m2", not_negative,
+        plane ? "length that the pressure acts on, or its area by 1 m of thickness"
+              : "area that the pressure acts on");
     key("speed", speed, "m/s", Range{0.0, 1e6}, "it never moves faster than this");
     key.required("speed");
     key("slow", slow, "-", Range{0.0, 1.0},
@@ -41,10 +48,14 @@ struct ServoConfig {
     key("gain", gain, "-", Range{0.0, 2.0, Open::low},
         "mass = inf: how fast it answers: 1 takes half of what is missing in the time between two "
         "corrections, if nothing gives way but what it touches");
-    key("mass", mass, "kg", not_negative,
-        "of a plate with the force on its back, with all that a support holds (in a plane case per "
-        "metre of thickness): Newton's law moves it in every step; left out (0): no inertia, or as "
-        "little as the step can bear; inf: no plate, its velocity is corrected every 10 steps");
+    key("mass", mass, plane ? "kg/m or kg" : "kg", not_negative,
+        plane ? "of a plate with the force on its back, with all that a support holds, per metre "
+                "of thickness: Newton's law moves it in every step; left out (0): no inertia, or "
+                "as little as the step can bear; inf: no plate, its velocity is corrected every 10 "
+                "steps"
+              : "of a plate with the force on its back, with all that a support holds: Newton's "
+                "law moves it in every step; left out (0): no inertia, or as little as the step "
+                "can bear; inf: no plate, its velocity is corrected every 10 steps");
   }
   bool is_on() const { return speed > 0.0; }
   bool is_plate() const { return is_on() && mass < no_limit; }
@@ -69,11 +80,23 @@ struct SupportServoConfig : ServoConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    ServoConfig::each_key(key);
+    keys_of_support(key, false);
+  }
+  template <class Visit>
+  void keys_of_support(Visit&& key, bool plane) {
+    keys_of_servo(key, plane);
     key("axis", axis, OneOf{"x", "y", "z"},
         "along which it is moved and pushes; a positive force pushes towards greater coordinates");
   }
   int axis_number() const { return axis == "x" ? 0 : axis == "y" ? 1 : 2; }
+};
+
+/// Likewise, of a plane case.
+struct PlaneServoConfig : SupportServoConfig {
+  template <class Visit>
+  void each_key(Visit&& key) {
+    keys_of_support(key, true);
+  }
 };
 
 /// Readings of a servo: of a part, or added up over all parts.

@@ -55,6 +55,10 @@ std::vector<std::string> directions_of() {
   return all;
 }
 
+template <class Vector>
+using ServoOf =
+    std::conditional_t<std::is_same_v<Vector, Vec2>, PlaneServoConfig, SupportServoConfig>;
+
 /// [[support]]: prescribed velocity of corners
 template <class RegionConfig, class Vector>
 struct SupportConfigOf {
@@ -63,7 +67,7 @@ struct SupportConfigOf {
   std::vector<std::string> fix = directions_of<Vector>();
   OverTime<Vector> velocity;  ///<  [m/s]
   HistoryConfig history;
-  SupportServoConfig servo;           ///< instead of the velocity along its axis
+  ServoOf<Vector> servo;              ///< instead of the velocity along its axis
   OverTime<SpinOf<Vector>> spin{};    ///<  [rad/s]
   Vector point{};                     ///< of the axis; where a stage begins: at that time  [m]
   std::vector<std::string> free{};    ///< directions in which forces move what it holds
@@ -111,7 +115,7 @@ struct SupportConfigOf {
                 "those with which it begins; []: it moves as it is told");
     key("force", force, plane ? "N/m" : "N", any_number,
         "free: given force at its centre of mass, or a table of it over time");
-    key("torque", torque, plane ? "N" : "N m", any_number,
+    key("torque", torque, plane ? "N m/m" : "N m", any_number,
         plane ? "free: given torque about its centre of mass, anticlockwise, or a table of it"
               : "free: given torque about its centre of mass, or a table of it over time");
     history.each_key(key);
@@ -126,7 +130,7 @@ struct SupportChangeOf {
   std::vector<std::string> fix{"same"};
   OverTime<Vector> velocity;  ///<  [m/s]
   double ramp = 0.0;          ///<  [s]
-  SupportServoConfig servo;
+  ServoOf<Vector> servo;
   OverTime<SpinOf<Vector>> spin{};                                    ///<  [rad/s]
   Vector point = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m]
   std::vector<std::string> free{"same"};
@@ -158,7 +162,7 @@ struct SupportChangeOf {
     key("force", force, std::is_same_v<Vector, Vec2> ? "N/m" : "N", any_number,
         "free: given force from now on, or a table of it over time since the stage began; left "
         "out: none");
-    key("torque", torque, std::is_same_v<Vector, Vec2> ? "N" : "N m", any_number,
+    key("torque", torque, std::is_same_v<Vector, Vec2> ? "N m/m" : "N m", any_number,
         "free: given torque from now on, likewise");
     key("ramp", ramp, "s", not_negative,
         "time since the stage began in which all of them grow from zero, linearly");

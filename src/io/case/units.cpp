@@ -195,6 +195,9 @@ std::string slip_of_prefix(std::string_view given) {
 /// "Pa, kPa, MPa or GPa"
 std::string units_like(const std::string& wanted, const Unit& target) {
   if (wanted == "N/m") return "N/m, kN/m or MN/m";
+  if (wanted == "J/m") return "J/m, kJ/m or MJ/m";
+  if (wanted == "N m") return "N m, kN m or MN m";
+  if (wanted == "N m/m") return "N m/m, kN m/m or N";
   for (const auto& row : usual_units()) {
     if (parse_unit(row.front())->powers != target.powers) continue;
     std::string text = row.front();
@@ -224,6 +227,33 @@ std::optional<Unit> parse_unit(std::string_view text) {
     if (below || text.front() == '*') text = trimmed(text.substr(1));
   }
 }
+
+namespace {
+
+/// Whether a unit is written with newtons: "kN m", "N/m".
+bool names_force(std::string_view unit) {
+  const std::size_t n = unit.find('N');
+  return n != std::string_view::npos && (n + 1 == unit.size() || unit[n + 1] < 'a');
+}
+
+/// What a unit measures by the word that stands there: N m and J, N/m and J/m2 are alike.
+std::string described(std::string_view written, const Unit& unit) {
+  static const Unit torque = *parse_unit("N m"), line = *parse_unit("N/m"),
+                    force = *parse_unit("N");
+  const std::string_view plain = trimmed(written);
+  if (names_force(plain)) {
+    if (unit.powers == torque.powers) return "a torque";
+    if (unit.powers == line.powers) return "a force per length";
+    if (unit.powers == force.powers && plain.find('m') != std::string_view::npos &&
+        plain.find('/') != std::string_view::npos)
+      return "a torque per length";
+  }
+  const bool names_energy = plain.find('J') != std::string_view::npos;
+  if (names_energy && unit.powers == force.powers) return "an energy per length";
+  return describe_dimension(unit);
+}
+
+}  // namespace
 
 std::string describe_dimension(const Unit& unit) {
   static const std::vector<std::pair<std::array<int, 4>, const char*>> names{
@@ -256,6 +286,15 @@ std::string describe_dimension(const Unit& unit) {
 
 double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem,
                       std::string* better) {
+  if (const std::size_t cut = wanted.find(" or "); cut != std::string::npos) {
+    std::string of_other;
+    const double value = parse_quantity(text, wanted.substr(cut + 4), of_other);
+    if (of_other.empty()) {
+      problem.clear();
+      return value;
+    }
+    return parse_quantity(text, wanted.substr(0, cut), problem, better);
+  }
   problem.clear();
   const auto meant = [&](const std::string& value) {
     problem += "; try " + value;
@@ -297,8 +336,7 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
   const std::optional<Unit> unit = parse_unit(rest);
   if (!unit || unit->powers != target.powers) {
     problem = !unit ? "'" + std::string(rest) + "' is not a unit"
-                    : quoted + " is " + describe_dimension(*unit) + ", " +
-                          (wanted == "N/m" ? "a force per length" : describe_dimension(target)) +
+                    : quoted + " is " + described(rest, *unit) + ", " + described(wanted, target) +
                           " is wanted, in " + units_like(wanted, target);
     if (const std::string spelt = respelt(rest, target); !spelt.empty())
       meant(number_and + spelt + "\"");

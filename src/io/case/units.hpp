@@ -33,7 +33,7 @@ Range given_range(const Range& range, std::string_view unit, double usual);
 
 /// A number and its unit, as text, in SI. Units that are powers of ten of SI give the double
 /// nearest to the exact value.
-/// @param wanted  the unit the value must be convertible to, such as "Pa"
+/// @param wanted  the unit the value must be convertible to, such as "Pa", or two: "N/m or N"
 /// @param problem gets what is wrong, empty if all is well
 /// @param better  gets the value as TOML writes it ("30 GPa" in quotes), if one alone can be meant
 double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem,

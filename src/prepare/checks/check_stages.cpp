@@ -157,7 +157,7 @@ std::vector<std::string> ends_in_si(Config& config) {
       continue;
     }
     std::string unit = quantity_named(probe->quantity).unit, problem;
-    if (config.method == "fdem2d") unit = per_metre(unit);
+    if (config.method == "fdem2d") unit = unit == "N m" ? "N m/m" : per_metre(unit);
     const std::string number = stage.when.substr(stage.when.find(rule->sign) + rule->sign.size());
     const std::size_t first = number.find_first_not_of(" \t");
     const double limit = parse_quantity(number.substr(first), unit, problem);

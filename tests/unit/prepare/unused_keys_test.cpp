@@ -182,5 +182,27 @@ TEST(UnusedKeys, a_forgotten_prefix_of_a_modulus_is_outside_its_range) {
   }
 }
 
+TEST(UnusedKeys, forces_of_plane_cases_are_per_metre_of_thickness) {
+  const std::string support = triangles + "[[support]]\nname = \"s\"\non = \"b\"\n";
+  const auto servo = [&](const std::string& force) {
+    return support + "servo = { axis = \"y\", speed = 1, force = " + force + " }\n";
+  };
+  EXPECT_EQ(said(servo("\"-1 kN/m\"")), "");
+  EXPECT_EQ(said(servo("\"-1 kN\"")), "");
+  EXPECT_EQ(said(servo("[[0, 0], [\"1 ms\", \"-1 kN/m\"]]")), "");
+  EXPECT_TRUE(says(servo("\"1 MPa\""), "\"1 MPa\" is a pressure, a force per length is wanted"));
+  const std::string free = support + "free = [\"x\", \"y\", \"turn\"]\n";
+  EXPECT_EQ(said(free + "torque = \"10 N m/m\"\n"), "");
+  EXPECT_EQ(said(free + "torque = \"10 N\"\n"), "");
+  EXPECT_TRUE(says(free + "torque = \"10 N m\"\n",
+                   "\"10 N m\" is a torque, a torque per length is wanted, in N m/m"));
+  EXPECT_TRUE(says(free + "force = [\"1 kN\", 0]\n", "is a force, a force per length is wanted"));
+  const std::string solid = tetrahedra + "[[support]]\nname = \"s\"\non = \"b\"\n";
+  EXPECT_TRUE(says(solid + "servo = { axis = \"y\", speed = 1, force = \"1 kN/m\" }\n",
+                   "\"1 kN/m\" is a force per length, a force is wanted, in N"));
+  EXPECT_TRUE(says(solid + "free = [\"turn\"]\ntorque = [0, 0, \"1 kN\"]\n",
+                   "is a force, a torque is wanted, in N m"));
+}
+
 }  // namespace unused_keys_test
 }  // namespace breccia
