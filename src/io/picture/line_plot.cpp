@@ -95,7 +95,7 @@ class Panel {
   Panel(const LinePlot& plot, int x, int y) : plot_(plot), x_(x), y_(y) {}
 
   std::string text() {
-    std::string svg = label(x_ + panel_width / 2, y_ + 20, plot_.title, "middle", "title");
+    std::string svg = title();
     if (!take_spans()) return svg + label(middle(), y_ + panel_height / 2, "no numbers", "middle");
     make_room();
     svg += axes();
@@ -106,6 +106,32 @@ class Panel {
   }
 
  private:
+  /// In two lines, and small letters, where it is wider than the plot.
+  std::string title() const {
+    constexpr double room = (panel_width - 12) / 1.1;  // letters are bold
+    std::vector<std::string> lines{plot_.title};
+    if (width_of(plot_.title) > room) {
+      const std::size_t half = plot_.title.size() / 2;
+      const std::size_t before = plot_.title.rfind(' ', half), after = plot_.title.find(' ', half);
+      const bool is_nearer = before != std::string::npos &&
+                             (after == std::string::npos || half - before <= after - half);
+      const std::size_t cut = is_nearer ? before : after;
+      if (cut != std::string::npos)
+        lines = {plot_.title.substr(0, cut), plot_.title.substr(cut + 1)};
+    }
+    double widest = room;
+    for (const std::string& line : lines) widest = std::max(widest, width_of(line));
+    std::string svg;
+    double y = y_ + (lines.size() > 1 ? 13 : 20);
+    for (const std::string& line : lines) {
+      std::string text = label(x_ + panel_width / 2, y, line, "middle", "title");
+      if (widest > room)
+        text.replace(0, 5, fmt::format("<text style=\"font-size:{:.1f}px\"", 12.0 * room / widest));
+      svg += text;
+      y += 14;
+    }
+    return svg;
+  }
   double middle() const { return 0.5 * (left() + right()); }
   double left() const { return x_ + left_; }
   double right() const { return x_ + panel_width - right_; }

@@ -72,6 +72,21 @@ TEST(LinePlot, NamesALevelWhereItCoversLeast) {
   EXPECT_GT(base_of(svg, "mean"), number_ahead(svg, ">mean<", "y2=\""));
 }
 
+TEST(LinePlot, BreaksATitleThatIsWiderThanThePlot) {
+  const auto up = [](double x) { return x; };
+  const auto titled = [&](const std::string& title) {
+    return svg_of({{title, "x", "y", {curve("", up)}, {}, {}}});
+  };
+  EXPECT_NE(titled("A short title").find(">A short title<"), std::string::npos);
+  const std::string svg =
+      titled("Concrete ball on a reinforced concrete slab (Durand et al. 2012, section 5)");
+  EXPECT_NE(svg.find(">Concrete ball on a reinforced concrete<"), std::string::npos) << svg;
+  EXPECT_LT(base_of(svg, "slab (Durand et al. 2012, section 5)"), 34.0) << "above the plot";
+  EXPECT_EQ(svg.find("font-size"), std::string::npos) << "letters as large as others";
+  const std::string wide = titled(std::string(150, 'w'));
+  EXPECT_LT(number_ahead(wide, ">www", "font-size:"), 6.0);
+}
+
 }  // namespace
 }  // namespace line_plot_test
 }  // namespace breccia
