@@ -64,7 +64,8 @@ BR_HD inline Readings operator+(Readings a, const Readings& b) {
   return a;
 }
 
-/// What a probe reads of the present state, when it is asked for: until then the host can go on.
+/// The readings of a probe at the present state, when they are asked for: until then the host can
+/// go on.
 using ReadingsLater = std::function<Readings()>;
 
 struct ProbeConfig;

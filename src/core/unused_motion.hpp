@@ -1,5 +1,5 @@
 #pragma once
-// What a support is given and cannot do: velocities along directions that it does not fix, ramps
+// Keys of a support that lead to nothing: velocities along directions that it does not fix, ramps
 // that lead nothing.
 
 #include <algorithm>

@@ -19,7 +19,7 @@ int device_count();
 /// Computes on GPU `number` from now on. A driver takes 0.2 s to get ready, in which this process
 /// goes on. @throws DeviceError if this build has no CUDA
 void use_device(int number);
-/// The same for process `turn` of this machine, whose GPUs are used in turn.
+/// Computes on GPU `turn` modulo how many there are: processes of a machine share them in turn.
 void use_device_in_turn(int turn);
 /// Waits until it is ready. @throws DeviceError if there is no such GPU (tells how many there are)
 void await_device();

@@ -236,7 +236,7 @@ bool names_force(std::string_view unit) {
   return n != std::string_view::npos && (n + 1 == unit.size() || unit[n + 1] < 'a');
 }
 
-/// What a unit measures by the word that stands there: N m and J, N/m and J/m2 are alike.
+/// The quantity of a unit, by the word that stands there: N m and J, N/m and J/m2 are alike.
 std::string described(std::string_view written, const Unit& unit) {
   static const Unit torque = *parse_unit("N m"), line = *parse_unit("N/m"),
                     force = *parse_unit("N");

@@ -77,7 +77,7 @@ class Method {
   virtual std::vector<double> probes() = 0;
   /// A row of the history is written: bonds that have broken since the last one get its time.
   virtual void note_breaks() {}
-  /// What a row of the history holds.
+  /// Numbers of a row of the history.
   struct Row {
     std::vector<double> probes;
     EnergyBalance energy;

@@ -5,8 +5,8 @@
 
 namespace breccia {
 
-/// What links and joints had spent on cracks by laws that stages have changed, beyond what their
-/// laws of now tell.  [J; in 2D J/m]
+/// Energy that links and joints had spent on cracks by laws that stages have changed, beyond what
+/// their laws of now tell.  [J; in 2D J/m]
 struct SpentOnCracks {
   double all = 0.0;
   double sliding = 0.0;  ///< where modes are told apart
