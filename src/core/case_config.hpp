@@ -204,8 +204,8 @@ struct CaseConfig {
     key("precision", precision, OneOf{"double", "mixed", "single"},
         "what numbers are stored in; mixed keeps positions and sums in double, and what links keep "
         "and do and forces of joints and couples in single precision: fewer bytes, for GPUs; "
-        "single "
-        "computes cohesive links of spheres in single precision, too");
+        "single computes cohesive links of spheres, and triangles and their joints, in single "
+        "precision, too");
     key("title", title, "one line for people");
     key("seed", seed, "-", Range{0, 9e15}, "seed of every random choice");
     key.table("time", time, "how long and how fast");

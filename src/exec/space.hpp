@@ -17,7 +17,8 @@ inline constexpr Index block_size = 128;
 
 /// Precision of stored numbers. full: double. mixed: states and forces of links, and forces of
 /// joints and couples, in single, all others in double; laws and sums compute in double. single:
-/// stored likewise, and laws of cohesive links compute in single (docs/theory.md, section 11).
+/// stored likewise, and laws of cohesive links, whole joints and triangles compute in single
+/// (docs/theory.md, section 11; docs/theory-fdem.md, section 8).
 enum class Precision { full, mixed, single };
 
 /// How a run executes: the space of its arrays and the threads of its host loops.

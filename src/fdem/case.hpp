@@ -73,8 +73,10 @@ struct Case {
                                        ///< triangles of the whole mesh)
   std::vector<Index> materials_of;     ///< likewise, else empty  (triangles of the whole mesh)
   std::vector<Vec2> middles;           ///< likewise, at the start  [m]
-  Buffer<JointBond> bonds;             ///< stage; indexed by Joints::law  (laws of joints)
-  std::vector<Index> base_bond;        ///< the one of the case that each is made of  (bonds)
+  Buffer<ElasticLaw<float>> laws_in_single;  ///< `laws`, of a run that computes so, else empty
+  Buffer<JointBond> bonds;                   ///< stage; indexed by Joints::law  (laws of joints)
+  Buffer<BondOf<float>> bonds_in_single;     ///< likewise
+  std::vector<Index> base_bond;              ///< the one of the case that each is made of  (bonds)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Triangles::hold  (held triangles)
   /// Each vertex of the mesh: bit 0: at the border or an edge that nothing joins, bit 1 such
@@ -88,7 +90,8 @@ struct Case {
   /// Visits the arrays that kernels read.
   template <class Visit>
   void each_array(Visit&& visit) {
-    visit(laws), visit(bonds), visit(contact_pairs), visit(holds), visit(starts);
+    visit(laws), visit(laws_in_single), visit(bonds), visit(bonds_in_single), visit(contact_pairs),
+        visit(holds), visit(starts);
   }
 };
 

@@ -401,39 +401,4 @@ BR_HD inline Indices<R> consecutive(Index first) {
   return i;
 }
 
-/// gather_records where records are of four doubles or floats.
-template <class Number, class Record, class R>
-BR_HD inline void gather_four(const View<const Record>& records, const Indices<R>& i,
-                              R (&columns)[4]) {
-  static_assert(sizeof(Record) == 4 * sizeof(Number));
-  if constexpr (sizeof(Number) == sizeof(double)) {
-    gather_records(records, i, columns);
-  } else {
-    Index at[width_of<R>];
-    __builtin_memcpy(at, &i, sizeof at);
-    double numbers[4][width_of<R>];
-    for (Index k = 0; k < width_of<R>; ++k) {
-      const auto* from = reinterpret_cast<const Number*>(&records[at[k]]);
-      for (int c = 0; c < 4; ++c) numbers[c][k] = from[c];
-    }
-    for (int c = 0; c < 4; ++c) columns[c] = pack_of<R>(numbers[c]);
-  }
-}
-/// Stores four columns as records of four; floats are rounded to the nearest.
-template <class Number, class Record, class R>
-BR_HD inline void store_four(const View<Record>& records, Index first, const R (&columns)[4]) {
-  static_assert(sizeof(Record) == 4 * sizeof(Number));
-  if constexpr (sizeof(Number) == sizeof(double)) {
-    store_records(records, first, columns);
-  } else {
-    double numbers[4][width_of<R>];
-    __builtin_memcpy(numbers, &columns, sizeof numbers);
-    for (Index k = 0; k < width_of<R>; ++k) {
-      Number own[4];
-      for (int c = 0; c < 4; ++c) own[c] = static_cast<Number>(numbers[c][k]);
-      __builtin_memcpy(&records[first + k], own, sizeof own);
-    }
-  }
-}
-
 }  // namespace breccia

@@ -113,11 +113,30 @@ struct WideOf<Single> {
 };
 template <class R>
 using Wide = typename WideOf<R>::type;
+/// Numbers in double that stand for as many items as R, in parts: what a kernel that computes in
+/// single precision reads its arrays by.
+template <class R>
+struct PartsOf {
+  using type = double;
+  static constexpr Index count = 1;
+};
+template <class R>
+using PartOf = typename PartsOf<R>::type;
 BR_HD inline Single narrowed(double wide) {
   return Single(static_cast<float>(wide));
 }
 BR_HD inline double widened(const Single& number) {
   return static_cast<double>(number.v);
+}
+
+/// A row of four numbers.
+BR_HD inline void write_fours(const Single (&numbers)[4], float* to) {
+#if defined(__CUDA_ARCH__)
+  *reinterpret_cast<float4*>(to) =
+      make_float4(numbers[0].v, numbers[1].v, numbers[2].v, numbers[3].v);
+#else
+  for (int k = 0; k < 4; ++k) to[k] = numbers[k].v;
+#endif
 }
 
 #if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
@@ -141,6 +160,11 @@ inline TwoPacks operator*(const TwoPacks& a, const TwoPacks& b) {
 template <>
 struct WideOf<SinglePack> {
   using type = TwoPacks;
+};
+template <>
+struct PartsOf<SinglePack> {
+  using type = WidestPack;
+  static constexpr Index count = 2;
 };
 template <>
 struct TypesOf<SinglePack> {
@@ -196,6 +220,23 @@ inline void write_rows(const SinglePack (&columns)[9], float* to) {
   }
   for (int k = 0; k < 16; ++k) to[stride * k + 8] = columns[8].v[k];
 }
+/// Rows of four numbers each, from columns.
+inline void write_fours(const SinglePack (&columns)[4], float* to) {
+  const __m512 low01 = _mm512_unpacklo_ps(columns[0].v, columns[1].v),
+               high01 = _mm512_unpackhi_ps(columns[0].v, columns[1].v),
+               low23 = _mm512_unpacklo_ps(columns[2].v, columns[3].v),
+               high23 = _mm512_unpackhi_ps(columns[2].v, columns[3].v);
+  // each of rows j, 4 + j, 8 + j, 12 + j
+  const __m512 rows[4] = {
+      _mm512_shuffle_ps(low01, low23, 0x44), _mm512_shuffle_ps(low01, low23, 0xee),
+      _mm512_shuffle_ps(high01, high23, 0x44), _mm512_shuffle_ps(high01, high23, 0xee)};
+  for (int j = 0; j < 4; ++j) {
+    _mm_storeu_ps(to + 4 * j, _mm512_castps512_ps128(rows[j]));
+    _mm_storeu_ps(to + 4 * (4 + j), _mm512_extractf32x4_ps(rows[j], 1));
+    _mm_storeu_ps(to + 4 * (8 + j), _mm512_extractf32x4_ps(rows[j], 2));
+    _mm_storeu_ps(to + 4 * (12 + j), _mm512_extractf32x4_ps(rows[j], 3));
+  }
+}
 inline SinglePack sqrt(const SinglePack& a) {
   return SinglePack(_mm512_sqrt_ps(a.v));
 }
@@ -232,6 +273,20 @@ inline void write_rows(const SinglePack (&columns)[9], float* to) {
     to[stride * k + 8] = columns[8].v[k];
   }
 }
+/// Rows of four numbers each, from columns.
+inline void write_fours(const SinglePack (&columns)[4], float* to) {
+  const __m256 low01 = _mm256_unpacklo_ps(columns[0].v, columns[1].v),
+               high01 = _mm256_unpackhi_ps(columns[0].v, columns[1].v),
+               low23 = _mm256_unpacklo_ps(columns[2].v, columns[3].v),
+               high23 = _mm256_unpackhi_ps(columns[2].v, columns[3].v);
+  const __m256 rows[4] = {
+      _mm256_shuffle_ps(low01, low23, 0x44), _mm256_shuffle_ps(low01, low23, 0xee),
+      _mm256_shuffle_ps(high01, high23, 0x44), _mm256_shuffle_ps(high01, high23, 0xee)};
+  for (int j = 0; j < 4; ++j) {  // rows j and 4 + j
+    _mm_storeu_ps(to + 4 * j, _mm256_castps256_ps128(rows[j]));
+    _mm_storeu_ps(to + 4 * (4 + j), _mm256_extractf128_ps(rows[j], 1));
+  }
+}
 inline SinglePack sqrt(const SinglePack& a) {
   return SinglePack(_mm256_sqrt_ps(a.v));
 }
@@ -251,6 +306,64 @@ inline TwoPacks widened(const SinglePack& number) {
 }
 #endif
 #endif
+
+/// One of the parts of numbers in double.
+template <class W, class Parts>
+BR_HD inline W part_of(const Parts& parts, [[maybe_unused]] Index which) {
+  if constexpr (width_of<W> == 1)
+    return parts;
+  else
+    return parts.half[which];
+}
+/// Records in double that stand for one of R's numbers.
+template <class Record, Index count>
+struct RecordParts {
+  Record part[count];
+};
+/// @param make  make(p) gives part p
+template <class R, class Make>
+BR_HD inline auto parts_by(const Make& make) {
+  using Record = decltype(make(Index{0}));
+  if constexpr (PartsOf<R>::count == 1)
+    return RecordParts<Record, 1>{{make(0)}};
+  else
+    return RecordParts<Record, 2>{{make(0), make(1)}};
+}
+/// A record of numbers, each rounded to the nearest, from parts in double.
+template <class R, template <class> class Record>
+BR_HD inline Record<R> narrowed_record(const Record<PartOf<R>> (&parts)[PartsOf<R>::count]) {
+  using W = PartOf<R>;
+  constexpr int count = sizeof(Record<double>) / sizeof(double);
+  static_assert(sizeof(Record<R>) == count * sizeof(R));
+  Record<R> record;
+  if constexpr (width_of<R> == 1) {
+    W wide[count];
+    __builtin_memcpy(wide, parts, sizeof wide);
+    R numbers[count];
+    for (int k = 0; k < count; ++k) numbers[k] = narrowed(wide[k]);
+    __builtin_memcpy(&record, numbers, sizeof record);
+  } else {
+    const auto* const first = reinterpret_cast<const W*>(&parts[0]);
+    const auto* const second = reinterpret_cast<const W*>(&parts[1]);
+    auto* const numbers = reinterpret_cast<R*>(&record);
+    for (int k = 0; k < count; ++k) numbers[k] = narrowed(Wide<R>{{first[k], second[k]}});
+  }
+  return record;
+}
+
+/// A record of doubles in floats, each rounded to the nearest.
+template <template <class> class Record>
+Record<float> in_floats(const Record<double>& record) {
+  constexpr int count = sizeof(Record<double>) / sizeof(double);
+  static_assert(sizeof(Record<float>) == count * sizeof(float));
+  double wide[count];
+  __builtin_memcpy(wide, &record, sizeof wide);
+  float numbers[count];
+  for (int k = 0; k < count; ++k) numbers[k] = static_cast<float>(wide[k]);
+  Record<float> rounded;
+  __builtin_memcpy(&rounded, numbers, sizeof rounded);
+  return rounded;
+}
 
 /// A function of double for each item.
 template <class R, class Function>

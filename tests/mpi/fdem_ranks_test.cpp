@@ -78,17 +78,19 @@ TEST(FdemRanks, leave_the_same_state_where_steps_fall_and_grow) {
     EXPECT_EQ(on_ranks(count, scene, 1000).outcome, expected) << count << " ranks";
 }
 
-TEST(FdemRanks, leave_the_same_state_in_mixed_precision) {
+TEST(FdemRanks, leave_the_same_state_in_mixed_and_single_precision) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     Scene scene = impact(joints);
     const std::uint64_t in_double = alone(scene, many).hash;
-    scene.config.precision = "mixed";
-    const Outcome expected = alone(scene, many);
-    EXPECT_GT(expected.cracks, 10U);
-    EXPECT_NE(expected.hash, in_double);
-    for (const auto& [count, threads] : {std::pair{1, 2}, {2, 1}, {3, 2}, {8, 1}, {32, 1}})
-      EXPECT_EQ(on_ranks(count, scene, many, {}, threads).outcome, expected)
-          << count << " ranks of " << threads << " threads";
+    for (const char* precision : {"mixed", "single"}) {
+      scene.config.precision = precision;
+      const Outcome expected = alone(scene, many);
+      EXPECT_GT(expected.cracks, 10U);
+      EXPECT_NE(expected.hash, in_double);
+      for (const auto& [count, threads] : {std::pair{1, 2}, {2, 1}, {3, 2}, {8, 1}, {32, 1}})
+        EXPECT_EQ(on_ranks(count, scene, many, {}, threads).outcome, expected)
+            << precision << ", " << count << " ranks of " << threads << " threads";
+    }
   }
 }
 

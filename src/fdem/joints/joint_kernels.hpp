@@ -2,9 +2,8 @@
 // The kernel of all joints: reads, one law call, one write.
 
 #include "core/kernel.hpp"
-#include "fdem/joints/joints.hpp"
+#include "fdem/joints/elastic_joints.hpp"
 #include "fdem_shared/exposed.hpp"
-#include "math/lanes.hpp"
 
 namespace breccia::fdem {
 
@@ -17,13 +16,18 @@ using fdem_shared::set_flag;
 
 /// Tractions at three points, damage and break of every joint (Lukas 2014, section 2). Joints that
 /// are whole and stay so, nearly all, are taken side by side.
-/// @tparam Number  what their forces are stored in
+/// @tparam Number  what their forces are stored in, and Single, too, what whole ones are computed
+///                 in
 template <class Number>
 struct JointForces {
   static constexpr const char* name = "fdem.joints";
+  using Stores = StoredAs<Number>;
+  using Computed = ComputedIn<Number>;
+  static constexpr bool in_single = is_single<Computed>;
   double time, dt;  ///< of the positions, and the step that led there  [s]
   View<const NodeState> nodes;
   View<const JointBond> bonds;
+  View<const BondOf<float>> bonds_in_single;  ///< where they are computed so
   View<const JointEnds> ends;
   View<const Index> law;
   View<const double> length, strength;
@@ -33,7 +37,7 @@ struct JointForces {
   View<const GlobalId> id;             ///< of triangles
   View<JointStage> stage;
   View<JointPoints> points;
-  View<JointForceOf<Number>> force;
+  View<JointForceOf<Stores>> force;
   View<JointWork> work;
   View<double> broke_at;
   View<JointHandover> handover;
@@ -47,6 +51,13 @@ struct JointForces {
     JointStage stage;  ///< of a pack: whole if one is
     R corner[4][4];    ///< position and velocity
     R start[3];        ///< stress at the start, if it has a slope  [Pa]
+  };
+  /// A pack that is computed in single precision.
+  template <class V>
+  struct Loaded<SingleOf<V>> {
+    using R = SingleOf<V>;
+    Loaded<PartOf<R>> part[PartsOf<R>::count];
+    JointStage stage;
   };
   /// Of joints in a pack, a bit for each.
   struct Left {
@@ -62,19 +73,32 @@ struct JointForces {
     loaded.stage = stage[i];
     for (Index k = 1; k < width_of<R>; ++k)
       if (stage[i + k] == JointStage::whole) loaded.stage = JointStage::whole;
-    if (left<R>(loaded)) return;
-    Index at[4][width_of<R>];
-    list_ends<R>(ends, i, at);
-    for (int k = 0; k < 4; ++k) loaded.end[k] = indices<R>(at[k]);
-    loaded.law = load_indices_now<R>(law, i);
-    if (graded.size > 0) load_start(i, loaded.start);
-    loaded.length = load_now<R>(length, i);
-    loaded.strength = load_now<R>(strength, i);
+    if (!left<R>(loaded)) load_constants(i, loaded);
   }
   template <class R>
-  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+  BR_HD void load_constants(Index i, Loaded<R>& loaded) const {
+    if constexpr (is_single<R>) {
+      each_part(i, loaded, [this](Index first, auto& part) {
+        part.stage = JointStage::whole;
+        load_constants(first, part);
+      });
+    } else {
+      Index at[4][width_of<R>];
+      list_ends<R>(ends, i, at);
+      for (int k = 0; k < 4; ++k) loaded.end[k] = indices<R>(at[k]);
+      loaded.law = load_indices_now<R>(law, i);
+      if (graded.size > 0) load_start(i, loaded.start);
+      loaded.length = load_now<R>(length, i);
+      loaded.strength = load_now<R>(strength, i);
+    }
+  }
+  template <class R>
+  BR_HD void load_late(Index i, Loaded<R>& loaded) const {
     if (left<R>(loaded)) return;
-    for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
+    if constexpr (is_single<R>)
+      each_part(i, loaded, [this](Index first, auto& part) { load_late(first, part); });
+    else
+      for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
   }
   /// One joint: false, with nothing written, unless it is whole, stays so and slips little under
   /// pressure, is dormant, or parted and without a force. Of i and its neighbours in a pack: what
@@ -86,7 +110,7 @@ struct JointForces {
     } else {
       constexpr unsigned all = (1U << width_of<R>)-1U;
       if (left<R>(loaded)) return Left{all, 0};
-      const Whole<R> now = whole(i, loaded);
+      const WholeOf<R> now = whole_in_run(i, loaded);
       Left still{0, 0};
       for (Index k = 0; k < width_of<R>; ++k) {
         if (stage[i + k] != JointStage::whole || now.beyond[k] != 0)
@@ -95,7 +119,7 @@ struct JointForces {
           still.drags |= 1U << k;
       }
       if (still.others == 0)
-        store_four<Number>(force, i, now.force);
+        store_four<Stores>(force, i, now.force);
       else if (still.others != all)
         store_but(still.others, i, now.force);
       return still;
@@ -106,10 +130,10 @@ struct JointForces {
   BR_HD bool update_at(const StepTime& now, Index i, const Loaded<double>& loaded) const {
     if (is_quiet(i, loaded)) return true;
     if (loaded.stage != JointStage::whole) return false;
-    const Whole<double> w = whole(i, loaded);
+    const WholeOf<Computed> w = whole_in_run(i, loaded);
     if (w.beyond) return false;
     if (w.drags) work[i].slide += spent_on_slips(i, loaded, now.last_dt);
-    store_four<Number>(force, i, w.force);
+    store_four<Stores>(force, i, w.force);
     return true;
   }
 
@@ -172,7 +196,7 @@ struct JointForces {
       damaged = damaged || state.point[q].damage > 0.0;
     }
     // Work is booked of the forces that act: as they are stored.
-    JointForceOf<Number> now = converted<Number>(force_of(bond_traction, o, h));
+    JointForceOf<Stores> now = converted<Stores>(force_of(bond_traction, o, h));
     if (before == JointStage::whole) {
       if (damaged)
         begin_work(i, bond, offset, a0, a1, b0, b1);
@@ -221,107 +245,54 @@ struct JointForces {
   /// @param span  of the step  [s]
   template <class R>
   BR_HD R spent_on_slips(Index i, const Loaded<R>& loaded, double span) const {
-    const ElasticLaw<R> elastic = elastic_law(i, loaded);
+    const ElasticBond<R> elastic = elastic_law(i, loaded);
     const JointOpening<R> now = opening<R>(loaded, 0.0), before = opening<R>(loaded, span);
     return spent_by_pressures<R>(elastic.slope, elastic.cohesion, elastic.bond[3], loaded.length,
                                  before, now, elastic.offset);
   }
-  /// By its points.
-  /// @param slope  p_f / h  [Pa/m]  @param cohesion  of this joint  [Pa]  @param h  its length  [m]
   template <class R>
-  BR_HD static R spent_by_pressures(const R& slope, const R& cohesion, const R& friction,
-                                    const R& h, const JointOpening<R>& before,
-                                    const JointOpening<R>& now, const R (&offset)[2]) {
-    R sum = constant<R>(0.0);
-    for (int q = 0; q < 3; ++q)
-      sum = sum + weight_of(q) *
-                      spent_by_pressure<R>(slope, cohesion, friction,
-                                           {before.open[q] + offset[0], now.open[q] + offset[0]},
-                                           {before.slide[q] + offset[1], now.slide[q] + offset[1]});
-    return h * sum;
-  }
-  /// Weight of an integration point in a mean.  [-]
-  BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
-
-  /// Joints as long as they are whole.
-  template <class R>
-  struct Whole {
-    using Mask = decltype(R{} < R{});
-    R force[4];   ///< on both corners of side a  [N/m]
-    Mask beyond;  ///< it does not stay so: its forces mean nothing
-    Mask drags;   ///< it is, or may have been, pressed and slips enough for book_slips()
-  };
-  /// By which they answer.
-  template <class R>
-  struct ElasticLaw {
-    R bond[12], offset[2];
-    R slope, tension, cohesion, quarter;
-    /// A point of this opening and slip, offset included.
-    template <class Mask>
-    BR_HD BondTraction<R> at(const R& open, const R& slide, Mask& beyond, Mask& drags) const {
-      const BondTraction<R> t =
-          elastic_response(slope, tension, quarter, cohesion, bond[3], open, slide, beyond);
-      // While it is pressed its normal traction is straight; it may have been a step ago.
-      const R resists = cohesion - bond[3] * min(t.normal, constant<R>(0.0));
-      drags = drags || (t.normal < 0.05 * tension && abs(t.shear) > least_drag * resists);
-      return t;
-    }
-  };
-  template <class R>
-  BR_HD ElasticLaw<R> elastic_law(Index i, const Loaded<R>& loaded) const {
-    ElasticLaw<R> elastic;
+  BR_HD ElasticBond<R> elastic_law(Index i, const Loaded<R>& loaded) const {
+    ElasticBond<R> elastic;
     gather_records(bonds, loaded.law, elastic.bond);
     offset_of(i, elastic.offset);
-    elastic.slope = elastic.bond[0] / loaded.length;
-    elastic.tension = elastic.bond[1] * loaded.strength;
-    elastic.cohesion = elastic.bond[2] * loaded.strength;
-    elastic.quarter = 0.25 / elastic.tension;
+    elastic.derive(loaded.length, loaded.strength);
     return elastic;
   }
   /// Forces of whole joints from their points, and whether the rock there may fail.
   template <class R>
-  BR_HD void add_points(const Loaded<R>& loaded, const ElasticLaw<R>& elastic,
+  BR_HD void add_points(const Loaded<R>& loaded, const ElasticBond<R>& elastic,
                         const JointOpening<R>& o, const BondTraction<R> (&t)[3],
-                        Whole<R>& w) const {
+                        WholeOf<R>& w) const {
     const R& h = loaded.length;
-    const R(&bond)[12] = elastic.bond;
-    Vec2Of<R> traction[3];
-    R normal = constant<R>(0.0), shear = normal;  // means
-    for (int q = 0; q < 3; ++q) {
-      traction[q] = t[q].shear * o.along + t[q].normal * o.normal;
-      normal = normal + weight_of(q) * t[q].normal;
-      shear = shear + weight_of(q) * t[q].shear;
+    fdem::add_points(h, elastic, o, t, w, [&](const R& normal, const R& shear) {
+      const R stretch = o.size / h - 1.0;
+      const auto along_from = [&](const auto& start) {
+        return elastic.along(o.along, stretch, normal, shear, start);
+      };
+      return graded.size > 0
+                 ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
+                 : along_from(in_situ);
+    });
+  }
+  /// A joint that is whole, or a pack, in the precision of the run. @param loaded  of R numbers, of
+  /// one joint always in double
+  template <class R>
+  BR_HD auto whole_in_run(Index i, const Loaded<R>& loaded) const {
+    if constexpr (!in_single) {
+      return whole(i, loaded);
+    } else {
+      using S = std::conditional_t<width_of<R> == 1, Single, R>;
+      constexpr Index width = width_of<PartOf<S>>;
+      Index laws[width_of<S>];
+      const auto wide = parts_by<S>([&](Index p) {
+        const auto& part = part_of(loaded, p);
+        __builtin_memcpy(laws + p * width, &part.law, width * sizeof(Index));
+        return differences(i + p * width, part);
+      });
+      return whole_in_single<S>(bonds_in_single, laws, narrowed_record<S>(wide.part));
     }
-    const R stretch = o.size / h - 1.0;
-    const auto along_from = [&](const auto& start) {
-      return stress_along(o.along, stretch, normal, shear, bond[8], bond[9], bond[10], start);
-    };
-    const R along = graded.size > 0
-                        ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
-                        : along_from(in_situ);
-    const auto failing = may_fail(elastic.tension, elastic.cohesion, bond[3], normal, shear, along);
-    w.beyond = w.beyond || (bond[8] > 0.0 && failing);
-    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
-    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
-    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
-    w.force[0] = first.x;
-    w.force[1] = first.y;
-    w.force[2] = second.x;
-    w.force[3] = second.y;
   }
 
-  /// Forces of a joint from its points.  [N/m]
-  BR_HD static JointForce force_of(const BondTraction<double> (&t)[3],
-                                   const JointOpening<double>& o, double h) {
-    Vec2 traction[3];
-    for (int q = 0; q < 3; ++q) traction[q] = t[q].shear * o.along + t[q].normal * o.normal;
-    const double weight = (-1.0 / 6.0) * h;
-    return {weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])};
-  }
-  /// Such a joint does not fail with the rock any more.
-  BR_HD static bool is_half_soft(const BondState<double>& point) {
-    return point.damage > 0.0 && softening(point.damage) < 0.5;
-  }
   /// How the rock at a joint fails under the tractions of its points.
   BR_HD Failure rock_failure_at(Index i, const JointBond& bond, const JointOpening<double>& o,
                                 const BondTraction<double> (&t)[3]) const {
@@ -381,8 +352,12 @@ struct JointForces {
   void store_but(unsigned others, Index i, const R (&numbers)[4]) const {
     for (Index k = 0; k < width_of<R>; ++k) {
       if ((others >> k & 1U) != 0) continue;
-      const double own[4] = {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k]};
-      store_four<Number>(force, i + k, own);
+      if constexpr (is_single<R>) {
+        force[i + k] = {{numbers[0].v[k], numbers[1].v[k]}, {numbers[2].v[k], numbers[3].v[k]}};
+      } else {
+        const double own[4] = {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k]};
+        store_four<Stores>(force, i + k, own);
+      }
     }
   }
   template <class R>
@@ -399,25 +374,44 @@ struct JointForces {
   /// @param books  for which the length of the step must be known
   BR_HD bool stays_whole(Index i, const Loaded<double>& loaded, bool books) const {
     if (loaded.stage != JointStage::whole) return false;
-    const Whole<double> now = whole(i, loaded);
+    const WholeOf<Computed> now = whole_in_run(i, loaded);
     if (now.beyond || (now.drags && !books)) return false;
-    store_four<Number>(force, i, now.force);
+    store_four<Stores>(force, i, now.force);
     if (now.drags) book_slips<double>(i, 1);
     return true;
   }
   template <class R>
-  BR_HD Whole<R> whole(Index i, const Loaded<R>& loaded) const {
+  BR_HD WholeOf<R> whole(Index i, const Loaded<R>& loaded) const {
     const JointOpening<R> o = opening(loaded, 0.0);
-    const ElasticLaw<R> elastic = elastic_law(i, loaded);
-    Whole<R> w;
-    w.beyond = !(o.size > 1e-12 * loaded.length);
-    w.drags = w.beyond;
+    const ElasticBond<R> elastic = elastic_law(i, loaded);
+    WholeOf<R> w;
     BondTraction<R> t[3];
-    for (int q = 0; q < 3; ++q)
-      t[q] = elastic.at(o.open[q] + elastic.offset[0], o.slide[q] + elastic.offset[1], w.beyond,
-                        w.drags);
+    elastic.points(o, loaded.length, t, w);
     add_points(loaded, elastic, o, t, w);
     return w;
+  }
+  template <class W>
+  BR_HD JointDifferences<W> differences(Index i, const Loaded<W>& loaded) const {
+    W offset[2];
+    offset_of(i, offset);
+    const Sym2Of<W> even{constant<W>(in_situ.xx), constant<W>(in_situ.yy), constant<W>(in_situ.xy)};
+    return differences_of(
+        loaded.corner, loaded.length, loaded.strength, offset,
+        graded.size > 0 ? Sym2Of<W>{loaded.start[0], loaded.start[1], loaded.start[2]} : even);
+  }
+  template <class R>
+  BR_HD static const auto& part_of(const Loaded<R>& loaded, [[maybe_unused]] Index which) {
+    if constexpr (is_single<R>)
+      return loaded.part[which];
+    else
+      return loaded;
+  }
+  /// visit(first joint, part) for the parts of a pack that is computed in single precision.
+  template <class V, class Visit>
+  BR_HD static void each_part(Index i, Loaded<SingleOf<V>>& loaded, const Visit& visit) {
+    using R = SingleOf<V>;
+    for (Index p = 0; p < PartsOf<R>::count; ++p)
+      visit(i + p * width_of<PartOf<R>>, loaded.part[p]);
   }
   /// Stress at the start of the rock at a joint: the mean of its two triangles'.  [Pa]
   BR_HD Sym2 start_of(Index i) const {

@@ -18,6 +18,7 @@ struct AlikeJoints {
 /// or begins to soften. @returns a bit for each that does, of which nothing is written
 template <class R, class Number>
 inline unsigned run_alike(const JointForces<Number>& joints, const AlikeJoints& pack) {
+  using Stores = StoredAs<Number>;
   constexpr Index width = width_of<R>;
   Index own[width], law[width], end[4][width];
   double length[width], share[width];
@@ -68,8 +69,8 @@ inline unsigned run_alike(const JointForces<Number>& joints, const AlikeJoints& 
     R normal = none, shear = none;  // means
     auto half_soft = none > none;
     for (int q = 0; q < 3; ++q) {
-      normal = normal + joints.weight_of(q) * t[q].normal;
-      shear = shear + joints.weight_of(q) * t[q].shear;
+      normal = normal + weight_of(q) * t[q].normal;
+      shear = shear + weight_of(q) * t[q].shear;
       half_soft = half_soft || (point[q].damage > 0.0 && softening(point[q].damage) < 0.5);
     }
     const R along = stress_along(now.along, now.size / h - 1.0, normal, shear, bond.young,
@@ -93,25 +94,25 @@ inline unsigned run_alike(const JointForces<Number>& joints, const AlikeJoints& 
   const Vec2Of<R> on_first = weight * (traction[0] + two * traction[1]);
   const Vec2Of<R> on_second = weight * (traction[2] + two * traction[1]);
   R last[4], acts[4];
-  gather_four<Number>(View<const JointForceOf<Number>>(joints.force), which, last);
+  gather_four<Stores>(View<const JointForceOf<Stores>>(joints.force), which, last);
   const R sums[4] = {on_first.x, on_first.y, on_second.x, on_second.y};
   for (Index k = 0; k < pack.count; ++k) {
     if ((slow >> k & 1U) != 0) continue;
     const double four[4] = {sums[0][k], sums[1][k], sums[2][k], sums[3][k]};
-    store_four<Number>(joints.force, own[k], four);
+    store_four<Stores>(joints.force, own[k], four);
   }
 
   // and what they do.
   const JointOpening<R> then =
       opening_of(x[0] - dt * v[0], x[1] - dt * v[1], x[2] - dt * v[2], x[3] - dt * v[3]);
   if (pack.whole) {
-    const R sum = joints.template spent_by_pressures<R>(
-        bond.stiffness / h, bond.cohesion * strength, bond.friction, h, then, now, offset);
+    const R sum = spent_by_pressures<R>(bond.stiffness / h, bond.cohesion * strength, bond.friction,
+                                        h, then, now, offset);
     for (Index k = 0; k < pack.count; ++k)
       if ((slow >> k & 1U) == 0) joints.work[own[k]].slide += sum[k];
     return slow;
   }
-  gather_four<Number>(View<const JointForceOf<Number>>(joints.force), which, acts);  // as stored
+  gather_four<Stores>(View<const JointForceOf<Stores>>(joints.force), which, acts);  // as stored
   const Vec2Of<R> f{last[0] + acts[0], last[1] + acts[1]}, s{last[2] + acts[2], last[3] + acts[3]};
   const Vec2Of<R> first = dt * (v[0] - v[2]), second = dt * (v[1] - v[3]);
   const R opened = 0.5 * (dot(f, now.normal) * dot(first, now.normal) +
@@ -127,7 +128,7 @@ inline unsigned run_alike(const JointForces<Number>& joints, const AlikeJoints& 
           residual_traction(pack.how, bond, strength, h, then.open[q] + offset[0], from, before[q]);
       const R ended =
           residual_traction(pack.how, bond, strength, h, now.open[q] + offset[0], to, point[q]);
-      rubbed = rubbed + joints.weight_of(q) * 0.5 * (began + ended) * (to - from);
+      rubbed = rubbed + weight_of(q) * 0.5 * (began + ended) * (to - from);
     }
     rubbed = h * rubbed;
   }

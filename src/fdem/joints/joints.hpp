@@ -206,16 +206,15 @@ struct JointOpening {
   R slide[3];               ///< of side a against b along e  [m]
 };
 
+/// @param first, second  a0 - b0 and a1 - b1  @param line  the middle line  [m]
 template <class R>
-BR_HD JointOpening<R> opening_of(const Vec2Of<R>& a0, const Vec2Of<R>& a1, const Vec2Of<R>& b0,
-                                 const Vec2Of<R>& b1) {
+BR_HD JointOpening<R> opening_by(const Vec2Of<R>& first, const Vec2Of<R>& second,
+                                 const Vec2Of<R>& line) {
   JointOpening<R> o;
   const R half = constant<R>(0.5);
-  const Vec2Of<R> line = half * ((a1 - a0) + (b1 - b0));
   o.size = norm(line);
   o.along = (1.0 / o.size) * line;
   o.normal = {-o.along.y, o.along.x};
-  const Vec2Of<R> first = a0 - b0, second = a1 - b1;
   o.open[0] = dot(first, o.normal);
   o.open[2] = dot(second, o.normal);
   o.slide[0] = dot(first, o.along);
@@ -223,6 +222,11 @@ BR_HD JointOpening<R> opening_of(const Vec2Of<R>& a0, const Vec2Of<R>& a1, const
   o.open[1] = half * (o.open[0] + o.open[2]);
   o.slide[1] = half * (o.slide[0] + o.slide[2]);
   return o;
+}
+template <class R>
+BR_HD JointOpening<R> opening_of(const Vec2Of<R>& a0, const Vec2Of<R>& a1, const Vec2Of<R>& b0,
+                                 const Vec2Of<R>& b1) {
+  return opening_by(a0 - b0, a1 - b1, constant<R>(0.5) * ((a1 - a0) + (b1 - b0)));
 }
 
 /// Opening and slip at which a joint carries a traction, its strength permitting. False if not.

@@ -12,21 +12,33 @@ namespace {
 
 constexpr Index width = width_of<WidestPack>;
 
+/// Packs that a kernel takes: of the numbers that it computes in.
+template <class Kernel>
+using PackOf = std::conditional_t<Kernel::in_single, SinglePack, WidestPack>;
+
 template <class Number>
 LeftJoints run_whole(const JointForces<Number>& joints, Index begin, Index end, bool books) {
+  using Pack = PackOf<JointForces<Number>>;
   Index i = begin;
-  for (; i + width <= end; i += width) {
-    const auto [others, drags] = run_at<WidestPack>(joints, i);
+  for (; i + width_of<Pack> <= end; i += width_of<Pack>) {
+    const auto [others, drags] = run_at<Pack>(joints, i);
     if (drags != 0 && !books) return {i, others | drags};
-    if (drags != 0) joints.template book_slips<WidestPack>(i, drags);
+    if (drags != 0) {  // in double
+      constexpr unsigned all = (1U << width) - 1U;
+      for (Index first = 0; first < width_of<Pack>; first += width) {
+        const unsigned own = drags >> first & all;
+        if (own != 0) joints.template book_slips<WidestPack>(i + first, own);
+      }
+    }
     if (others != 0) return {i, others};
   }
   return {i, 0};
 }
 template <class Kernel>
 Index run_all(const Kernel& triangles, Index begin, Index end) {
+  using Pack = PackOf<Kernel>;
   Index t = begin;
-  for (; t + width <= end; t += width) run_at<WidestPack>(triangles, t);
+  for (; t + width_of<Pack> <= end; t += width_of<Pack>) run_at<Pack>(triangles, t);
   return t;
 }
 
@@ -41,6 +53,11 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
   return run_whole(kernel, begin, end, books);
 }
 
+[[gnu::flatten]] LeftJoints BR_PACKS::run(const JointForces<Single>& kernel, Index begin, Index end,
+                                          bool books) {
+  return run_whole(kernel, begin, end, books);
+}
+
 [[gnu::flatten]] unsigned BR_PACKS::run(const JointForces<double>& kernel,
                                         const AlikeJoints& pack) {
   return run_alike<WidestPack>(kernel, pack);
@@ -49,10 +66,19 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
   return run_alike<WidestPack>(kernel, pack);
 }
 
+[[gnu::flatten]] unsigned BR_PACKS::run(const JointForces<Single>& kernel,
+                                        const AlikeJoints& pack) {
+  return run_alike<WidestPack>(kernel, pack);
+}
+
 [[gnu::flatten]] Index BR_PACKS::run(const TriangleForces<double>& kernel, Index begin, Index end) {
   return run_all(kernel, begin, end);
 }
 [[gnu::flatten]] Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end) {
+  return run_all(kernel, begin, end);
+}
+
+[[gnu::flatten]] Index BR_PACKS::run(const TriangleForces<Single>& kernel, Index begin, Index end) {
   return run_all(kernel, begin, end);
 }
 

@@ -4,9 +4,17 @@
 #include <cmath>
 
 #include "math/elementary.hpp"
+#include "math/single.hpp"
 #include "math/vec2.hpp"
 
 namespace breccia::fdem {
+
+/// Green's strain (F^T F - I) / 2, but twice its xy.  [-]
+template <class R>
+BR_HD Sym2Of<R> green_strain(const Mat2Of<R>& f) {
+  return {0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0), 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0),
+          f.xx * f.xy + f.yx * f.yy};
+}
 
 /// How a triangle has moved and deformed against its reference.
 template <class R>
@@ -14,6 +22,58 @@ struct Deformation {
   Mat2Of<R> gradient;           ///< F: reference to current  [-]
   Mat2Of<R> velocity_gradient;  ///< L  [1/s]
   R jacobian;                   ///< J = det F: current over reference area  [-]
+
+  /// B - I, B = F F^T.  [-]
+  BR_HD Sym2Of<R> stretch() const {
+    const Vec2Of<R> row_x{gradient.xx, gradient.xy}, row_y{gradient.yx, gradient.yy};
+    return {dot(row_x, row_x) - 1.0, dot(row_y, row_y) - 1.0, dot(row_x, row_y)};
+  }
+  /// J - 1/J. @param over_j  1/J  [-]
+  BR_HD R swelling(const R& over_j) const { return jacobian - over_j; }
+  BR_HD Sym2Of<R> green() const { return green_strain(gradient); }
+};
+
+/// Of a triangle that is computed in single precision, what must be taken in double and rounded
+/// then: differences of its corners, and strains, which are small beside the 1 of F, however far
+/// the triangle has turned.
+template <class R>
+struct TriangleStrains {
+  Vec2Of<R> edge[2];   ///< from corner 0 to corners 1 and 2  [m]
+  Vec2Of<R> rate[2];   ///< of the edges  [m/s]
+  Mat2Of<R> gradient;  ///< F  [-]
+  Sym2Of<R> stretch;   ///< B - I  [-]
+  R growth;            ///< J - 1  [-]
+  Sym2Of<R> green;     ///< of bedded rock, else 0; see green_strain()  [-]
+};
+/// @param W  double or a pack of doubles
+template <class W>
+BR_HD TriangleStrains<W> strains(const Mat2Of<W>& shape_inverse, const Vec2Of<W> (&x)[3],
+                                 const Vec2Of<W> (&v)[3], bool bedded) {
+  const Vec2Of<W> first = x[1] - x[0], second = x[2] - x[0];
+  Deformation<W> d;
+  d.gradient = columns(first, second) * shape_inverse;
+  return {{first, second}, {v[1] - v[0], v[2] - v[0]},    d.gradient,
+          d.stretch(),     determinant(d.gradient) - 1.0, bedded ? d.green() : Sym2Of<W>{}};
+}
+
+/// In single precision: from strains that were taken in double.
+template <class V>
+struct Deformation<SingleOf<V>> {
+  using R = SingleOf<V>;
+  TriangleStrains<R> taken;
+  Mat2Of<R> gradient, velocity_gradient;
+  R jacobian;
+
+  BR_HD explicit Deformation(const TriangleStrains<R>& by)
+      : taken(by),
+        gradient(by.gradient),
+        velocity_gradient(columns(by.rate[0], by.rate[1]) *
+                          inverse(columns(by.edge[0], by.edge[1]))),
+        jacobian(1.0 + by.growth) {}
+  BR_HD Sym2Of<R> stretch() const { return taken.stretch; }
+  /// g (2 + g)/J, g = J - 1.
+  BR_HD R swelling(const R& over_j) const { return taken.growth * (2.0 + taken.growth) * over_j; }
+  BR_HD Sym2Of<R> green() const { return taken.green; }
 };
 
 /// @param shape_inverse  inverse of the reference edges X1 - X0, X2 - X0 as columns  [1/m]
@@ -62,22 +122,22 @@ struct ElasticLaw {
   BR_HD Sym2Of<R> stress(const Deformation<R>& d, const R& eta) const {
     const Mat2Of<R>& f = d.gradient;
     const R over_j = 1.0 / d.jacobian, scale = shear * over_j;
-    const R volumetric = 0.5 * lambda * (d.jacobian - over_j);
+    const R volumetric = 0.5 * lambda * d.swelling(over_j);
+    const Sym2Of<R> stretch = d.stretch();
     const Mat2Of<R>& l = d.velocity_gradient;
     const Vec2Of<R> row_x{f.xx, f.xy}, row_y{f.yx, f.yy};
     Sym2Of<R> kept = preset;  // by the reference: S_0, and S of bedded rock
     const auto bedded = is_bedded();
     if (any(bedded)) {
-      const Sym2Of<R> more = answer_of_planes(f);
+      const Sym2Of<R> more = answer_of_planes(d.green());
       kept = {select(bedded, kept.xx + more.xx, kept.xx),
               select(bedded, kept.yy + more.yy, kept.yy),
               select(bedded, kept.xy + more.xy, kept.xy)};
     }
     const Vec2Of<R> preset_x = kept * row_x, preset_y = kept * row_y;
-    return {
-        scale * (dot(row_x, row_x) - 1.0) + volumetric + eta * l.xx + over_j * dot(row_x, preset_x),
-        scale * (dot(row_y, row_y) - 1.0) + volumetric + eta * l.yy + over_j * dot(row_y, preset_y),
-        scale * dot(row_x, row_y) + 0.5 * eta * (l.xy + l.yx) + over_j * dot(row_y, preset_x)};
+    return {scale * stretch.xx + volumetric + eta * l.xx + over_j * dot(row_x, preset_x),
+            scale * stretch.yy + volumetric + eta * l.yy + over_j * dot(row_y, preset_y),
+            scale * stretch.xy + 0.5 * eta * (l.xy + l.yx) + over_j * dot(row_y, preset_x)};
   }
   /// sigma_zz of plane strain, where B_zz = 1: (lambda / 2) (J - 1 / J).  [Pa]
   BR_HD R stress_across(const Deformation<R>& d) const {
@@ -113,21 +173,18 @@ struct ElasticLaw {
   }
 
  private:
-  /// tr E and D : E.
-  BR_HD Vec2Of<R> strains_of_planes(const Mat2Of<R>& f, const Vec2Of<R>& twice) const {
-    const R xx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
-            yy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0);
-    const R xy = f.xx * f.xy + f.yx * f.yy;
-    return {xx + yy, twice.x * (xx - yy) + twice.y * xy};
+  /// tr E and D : E. @param green  see green_strain()
+  BR_HD Vec2Of<R> strains_of_planes(const Sym2Of<R>& green, const Vec2Of<R>& twice) const {
+    return {green.xx + green.yy, twice.x * (green.xx - green.yy) + twice.y * green.xy};
   }
   /// S.  [Pa]
-  BR_HD Sym2Of<R> answer_of_planes(const Mat2Of<R>& f) const {
-    const Vec2Of<R> twice = twice_the_angle(), e = strains_of_planes(f, twice);
+  BR_HD Sym2Of<R> answer_of_planes(const Sym2Of<R>& green) const {
+    const Vec2Of<R> twice = twice_the_angle(), e = strains_of_planes(green, twice);
     const R alike = tilt * e.y, turned = tilt * e.x + bend * e.y;
     return {alike + turned * twice.x, alike - turned * twice.x, turned * twice.y};
   }
   BR_HD R energy_of_planes(const Mat2Of<R>& f) const {
-    const Vec2Of<R> e = strains_of_planes(f, twice_the_angle());
+    const Vec2Of<R> e = strains_of_planes(green_strain(f), twice_the_angle());
     return (tilt * e.x + 0.5 * bend * e.y) * e.y;
   }
   BR_HD R bedded_at_start() const {
@@ -154,6 +211,16 @@ BR_HD void corner_forces(const Sym2Of<R>& sigma, const Vec2Of<R> (&x)[3], Vec2Of
     const Vec2Of<R> edge = x[(i + 2) % 3] - x[(i + 1) % 3];
     force[i] = half * (sigma * Vec2Of<R>{edge.y, -edge.x});
   }
+}
+
+/// In single precision on corners 1 and 2; corner 0 gets what makes the sum zero, in double.
+/// @param edge  from corner 0 to corners 1 and 2  [m]
+template <class R>
+BR_HD void corner_forces(const Sym2Of<R>& sigma, const Vec2Of<R> (&edge)[2],
+                         Vec2Of<R> (&force)[2]) {
+  const R half = constant<R>(0.5);
+  force[0] = half * (sigma * Vec2Of<R>{-edge[1].y, edge[1].x});
+  force[1] = half * (sigma * Vec2Of<R>{edge[0].y, -edge[0].x});
 }
 
 /// Lame's first constant of the plane problem.

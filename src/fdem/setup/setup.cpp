@@ -182,6 +182,23 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   set_up_bundles(w, tied);
 }
 
+/// Records of numbers in single precision.
+template <template <class> class Law>
+void round_all(Buffer<Law<float>>& to, const Buffer<Law<double>>& from) {
+  std::vector<Law<double>> laws;
+  copy_to(laws, from);
+  std::vector<Law<float>> rounded;
+  for (const Law<double>& law : laws) rounded.push_back(in_floats(law));
+  copy_to(to, rounded);
+}
+/// Laws as a run that computes in single precision reads them.
+void round_laws(World& w) {
+  if (w.exec.precision != Precision::single) return;
+  Case& given = set_up(w);
+  round_all(given.laws_in_single, given.laws);
+  round_all(given.bonds_in_single, given.bonds);
+}
+
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
@@ -234,6 +251,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   set_up_bodies(w, model);
   set_up_elements(w, config, model);
   set_up_joints(w, config, model);
+  round_laws(w);
   set_up_supports(w, config, [&](const RegionConfig& region, const std::string& where) {
     return corners_in(model, region, where);
   });
@@ -271,6 +289,7 @@ void configure(World& w, const Config& config) {
     copy_to(bonds, given.bonds);
     copy_to(given.bonds, with_strengths(std::move(bonds), bond_table(config), given.base_bond));
   }
+  round_laws(w);
   std::vector<ContactPair> pairs = contact_table(config);
   const double friction = config.stage_friction;
   if (friction >= 0.0)

@@ -53,10 +53,10 @@ BusyWide<Wide> listed(const Wide& wide, const KeptList& list, Index groups) {
 template <class Number, class By>
 void launch_kept_pairs(World& w, const By& by) {
   using WideJoints = JointsWide<Number>;
-  using WideCouples = CouplesWide<Number, true>;
+  using WideCouples = CouplesWide<StoredAs<Number>, true>;
   const Index joints = w.joints.size(), couples = w.couples.size();
   const JointForces<Number> joint = joint_kernel<Number>(w);
-  const CoupleForces<Number> couple = couple_kernel<Number>(w);
+  const CoupleForces<StoredAs<Number>> couple = couple_kernel<StoredAs<Number>>(w);
   const Index couple_groups = groups_for<WideCouples>(w.busy, couples, most_groups),
               joint_groups = groups_for<WideJoints>(w.busy_joints, joints, most_groups);
   const auto launch = [&](const auto& other_joints) {  // first what takes longest
@@ -81,13 +81,13 @@ void launch_kept_pairs(World& w, const By& by) {
 template <class Number, bool any_couple, class By>
 void launch_busy(World& w, const By& by) {
   using Joints = JointsWide<Number>;
-  using Couples = CouplesWide<Number, any_couple>;
+  using Couples = CouplesWide<StoredAs<Number>, any_couple>;
   const Index joints = w.joints.size(), couples = w.couples.size();
   const Index groups = groups_of<Couples>(couples, most_groups),
               joint_groups = groups_of<Joints>(joints, most_groups);
   const auto wide_joints = bounded<blocks_of_pairs>(
       listed(Joints{joint_kernel<Number>(w)}, w.busy_joints, joint_groups));
-  const auto wide_couples = listed(Couples{couple_kernel<Number>(w)}, w.busy, groups);
+  const auto wide_couples = listed(Couples{couple_kernel<StoredAs<Number>>(w)}, w.busy, groups);
   // Joints first: one takes longest. Both in registers of which four blocks fit.
   for_each_part(w.exec, part(joint_groups * Joints::width, by(wide_joints),
                              part(groups * Couples::width, by(wide_couples), Parts<>{})));
@@ -96,9 +96,9 @@ void launch_busy(World& w, const By& by) {
 /// First what takes little, and lists of couples that may meet and of damaged joints; then these.
 template <class Number, bool any_couple, class By>
 void launch_busy_pairs(World& w, const By& by) {
-  using Couple = BeginningCouples<Number>;
+  using Couple = BeginningCouples<StoredAs<Number>>;
   const Index joints = w.joints.size(), couples = w.couples.size();
-  const Couple couple{couple_kernel<Number>(w)};
+  const Couple couple{couple_kernel<StoredAs<Number>>(w)};
   const JointForces<Number> joint = joint_kernel<Number>(w);
   const auto list_couples = by(ListBusy<Couple>{couple, w.busy.item.view(), w.busy.count.view()});
   const auto list_joints = [&](const auto& kernel) {
@@ -135,11 +135,11 @@ struct Launches {
 
   template <class By>
   static void pairs(World& w, const By& by) {
-    with_number(w.exec.precision, [&](auto number) { launch_pairs<decltype(number)>(w, by); });
+    with_arithmetic(w.exec.precision, [&](auto number) { launch_pairs<decltype(number)>(w, by); });
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
-    with_number(w.exec.precision, [&](auto number) {
+    with_arithmetic(w.exec.precision, [&](auto number) {
       using Sums = TriangleForces<decltype(number)>;
       visit(CountLists<Sums>{triangle_kernel<decltype(number)>(w), w.busy.count.data(),
                              w.busy_joints.count.data()});

@@ -41,7 +41,7 @@ bool move_range(const World& w, const MoveTriangles& kernel, Index begin, Index 
 void HostRun::inner_joint_forces(World& w) const {
   if (w.joint_packs.empty()) return;
   const StageTime timed(w.exec, "joint_forces");
-  with_number(w.exec.precision, [&w](auto number) {
+  with_arithmetic(w.exec.precision, [&w](auto number) {
     const auto kernel = joint_kernel<decltype(number)>(w);
     each_run_of_packs(
         w, [](JointPack pack) { return pack == JointPack::inner; },
@@ -58,7 +58,7 @@ void HostRun::inner_joint_forces(World& w) const {
 
 void HostRun::joint_forces(World& w) const {
   const StageTime timed(w.exec, "joint_forces");
-  with_number(w.exec.precision, [&w](auto number) {
+  with_arithmetic(w.exec.precision, [&w](auto number) {
     const auto kernel = joint_kernel<decltype(number)>(w);
     if (w.joint_packs.empty())
       return for_each_run(w.exec, w.joints.size(), 64 * joint_pack,
@@ -86,7 +86,7 @@ void HostRun::pair_forces(World& w) const {
 
 void HostRun::sum_forces(World& w) const {
   const StageTime timed(w.exec, "triangle_forces");
-  with_number(w.exec.precision, [&](auto number) {
+  with_arithmetic(w.exec.precision, [&](auto number) {
     const auto kernel = triangle_kernel<decltype(number)>(w);
     fdem_shared::each_run(w, w.domain.runs,
                           [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });

@@ -78,7 +78,8 @@ void run_joints([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints,
                 Index end) {
 #if defined(BR_WIDE_LANES)
   LeftOver<Number> others(lanes, joints);
-  for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
+  const Index width = pack_width<JointForces<Number>>(lanes);
+  while (width > 1 && end - begin >= width) {
     const LeftJoints left = lanes == Lanes::eight ? PacksAvx512::run(joints, begin, end, true)
                                                   : PacksAvx2::run(joints, begin, end, true);
     begin = left.first;
@@ -100,10 +101,16 @@ void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Inde
 void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end) {
   run_joints(lanes, kernel, begin, end);
 }
+void run_packs(Lanes lanes, const JointForces<Single>& kernel, Index begin, Index end) {
+  run_joints(lanes, kernel, begin, end);
+}
 void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const TriangleForces<Single>& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 void run_packs(Lanes lanes, const CoupleForces<double>& kernel, Index begin, Index end) {
@@ -123,6 +130,9 @@ Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Ind
   return while_whole(lanes, kernel, begin, end);
 }
 Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end) {
+  return while_whole(lanes, kernel, begin, end);
+}
+Index run_whole(Lanes lanes, const JointForces<Single>& kernel, Index begin, Index end) {
   return while_whole(lanes, kernel, begin, end);
 }
 

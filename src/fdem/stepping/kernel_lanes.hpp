@@ -10,11 +10,18 @@
 
 namespace breccia::fdem {
 
+/// Items of a whole pack.
+template <class Kernel>
+Index pack_width(Lanes lanes) {
+  return static_cast<Index>(lanes) * (Kernel::in_single && lanes != Lanes::one ? 2 : 1);
+}
 /// kernel for the items [begin, end) on the calling thread.
 void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const JointForces<Single>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const TriangleForces<Single>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const CoupleForces<double>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const CoupleForces<float>& kernel, Index begin, Index end);
 /// @returns whether a triangle has used its margin up
@@ -36,6 +43,7 @@ struct LeftJoints {
 /// ends; from there on nothing is written, but forces of joints that are whole and stay so
 Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
 Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
+Index run_whole(Lanes lanes, const JointForces<Single>& kernel, Index begin, Index end);
 
 /// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
 /// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
@@ -45,10 +53,13 @@ Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Inde
 struct PacksAvx2 {
   static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
   static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end, bool books);
+  static LeftJoints run(const JointForces<Single>& kernel, Index begin, Index end, bool books);
   static unsigned run(const JointForces<double>& kernel, const AlikeJoints& pack);
   static unsigned run(const JointForces<float>& kernel, const AlikeJoints& pack);
+  static unsigned run(const JointForces<Single>& kernel, const AlikeJoints& pack);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<Single>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
@@ -58,10 +69,13 @@ struct PacksAvx2 {
 struct PacksAvx512 {
   static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
   static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end, bool books);
+  static LeftJoints run(const JointForces<Single>& kernel, Index begin, Index end, bool books);
   static unsigned run(const JointForces<double>& kernel, const AlikeJoints& pack);
   static unsigned run(const JointForces<float>& kernel, const AlikeJoints& pack);
+  static unsigned run(const JointForces<Single>& kernel, const AlikeJoints& pack);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<Single>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);

@@ -75,7 +75,14 @@ struct JointsWide {
     BondTraction<double> own{};
     BondState<double> state = loaded.point;
     bool leaves = false, slips = false;
-    if (whole) own = elastic.at(now.x, now.y, leaves, slips);
+    WholeOf<typename Joint::Computed> forces{};
+    if constexpr (Joint::in_single) {  // of all points, by each thread
+      if (whole) forces = all.whole_in_run(j, joint);
+      leaves = forces.beyond;
+      slips = forces.drags;
+    } else if (whole) {
+      own = elastic.at(now.x, now.y, leaves, slips);
+    }
     if (softened) own = response(bond, share, h, now.x, now.y, state);
     BondTraction<double> t[3];
     for (int p = 0; p < 3; ++p) t[p] = {group.from(p, own.normal), group.from(p, own.shear)};
@@ -83,13 +90,12 @@ struct JointsWide {
     const unsigned leaving = points(leaves), slipping = points(slips),
                    damaged = points(state.damage > 0.0), failed = points(state.damage >= 1.0),
                    failed_with_rock = points(failure_of(loaded.point) != Failure::none),
-                   half_soft = points(softened && bond.by_rock() && Joint::is_half_soft(state));
+                   half_soft = points(softened && bond.by_rock() && is_half_soft(state));
 
-    typename Joint::template Whole<double> forces{};
     forces.beyond = leaving != 0;
     bool stays = false;
     if (whole) {
-      all.add_points(joint, elastic, o, t, forces);
+      if constexpr (!Joint::in_single) all.add_points(joint, elastic, o, t, forces);
       stays = !forces.beyond;
     }
     if (softened) {
@@ -105,9 +111,9 @@ struct JointsWide {
       const Vec2 last = point(Joint::opening(joint, dt), q, elastic.offset);
       double part = 0.0;
       if (books)
-        part = Joint::weight_of(q) * spent_by_pressure<double>(elastic.slope, elastic.cohesion,
-                                                               bond.friction, {last.x, now.x},
-                                                               {last.y, now.y});
+        part =
+            weight_of(q) * spent_by_pressure<double>(elastic.slope, elastic.cohesion, bond.friction,
+                                                     {last.x, now.x}, {last.y, now.y});
       if (rubs) part = Joint::rubbed_at(q, bond, share, h, last, now, loaded.point, state);
       for (int p = 0; p < 3; ++p) sum += group.from(p, part);
     }
@@ -115,11 +121,12 @@ struct JointsWide {
     if (softened && i % width < 3) all.points[j].point[q] = state;
     if (!leads) return Left::nothing;
     if (whole) {
-      store_four<Number>(all.force, j, forces.force);
+      store_four<typename Joint::Stores>(all.force, j, forces.force);
       if (books) all.work[j].slide += h * sum;
       return Left::nothing;
     }
-    JointForceOf<Number> force = converted<Number>(Joint::force_of(t, o, h));
+    using Stores = typename Joint::Stores;
+    JointForceOf<Stores> force = converted<Stores>(force_of(t, o, h));
     const auto velocity = [&](int corner) {
       return Vec2{joint.corner[corner][2], joint.corner[corner][3]};
     };

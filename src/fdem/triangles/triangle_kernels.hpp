@@ -21,21 +21,25 @@ inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: 
 
 /// Internal force of the triangle, plus its joints by slot, plus its couples by the partners'
 /// global ids: no order of memory, threads or ranks changes a bit.
-/// @tparam Number  what forces of joints and couples are stored in
+/// @tparam Number  what forces of joints and couples are stored in, and Single, too, what internal
+///                 forces are computed in
 template <class Number>
 struct TriangleForces {
   static constexpr const char* name = "fdem.triangles";
+  using Stores = StoredAs<Number>;
+  static constexpr bool in_single = is_single<ComputedIn<Number>>;
   double span;  ///< time that the forces of this moment act  [s]
   View<const TriangleNodes> nodes;
   View<const Index> law;  ///< place among the laws
   View<const ElasticTriangle> laws;
+  View<const ElasticLaw<float>> laws_in_single;  ///< where they are computed so
   View<const Mat2> shape_inverse;
   View<const double> viscosity;
   View<const EdgeJoints> edges;
-  View<const JointForceOf<Number>>
+  View<const JointForceOf<Stores>>
       joint_force;  ///< the last one is zero: that of an edge without a joint
   IncidenceView couples;
-  View<const CoupleForceOf<Number>> couple_force;
+  View<const CoupleForceOf<Stores>> couple_force;
   View<const CouplePhase> phase;  ///< of couples: others than those that act have no force
   View<Corners> force;
   View<double> viscous_work;
@@ -50,40 +54,73 @@ struct TriangleForces {
     Index edge[3][width_of<R>];  ///< entries of `edges`
     R joint[3][4];               ///< forces
   };
+  /// A pack that is computed in single precision loads part by part.
+  template <class V>
+  struct Loaded<SingleOf<V>> {};
   BR_HD void set(const StepTime& now) { span = now.last_dt; }
   /// All but forces of joints and couples.
   template <class R>
   BR_HD void load_early(Index t, Loaded<R>& loaded) const {
-    for (int k = 0; k < 3; ++k)
-      for (Index i = 0; i < width_of<R>; ++i) loaded.edge[k][i] = read_now(&edges[t + i].at[k]);
-    loaded.law = load_indices_now<R>(law, t);
-    loaded.viscosity = load_now<R>(viscosity, t);
-    loaded.couples = read_now(&couples.starts[t]);
-    loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
-    loaded.nodes.read(nodes, t);
-    loaded.inverse.read(shape_inverse, t);
-    loaded.nodes.wait();
-    loaded.inverse.wait();
+    if constexpr (!is_single<R>) {
+      load_edges(t, loaded);
+      loaded.law = load_indices_now<R>(law, t);
+      loaded.viscosity = load_now<R>(viscosity, t);
+      load_couples(t, loaded);
+      loaded.nodes.read(nodes, t);
+      loaded.inverse.read(shape_inverse, t);
+      loaded.nodes.wait();
+      loaded.inverse.wait();
+    }
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
-    for (int k = 0; k < 3; ++k) {
-      if constexpr (width_of<R> == 1) {
-        const JointForce own =
-            converted<double>(read_record_now(&joint_force[joint_of(loaded.edge[k][0])]));
-        __builtin_memcpy(loaded.joint[k], &own, sizeof own);
-      } else {
-        Index joint[width_of<R>];
-        for (Index i = 0; i < width_of<R>; ++i) joint[i] = joint_of(loaded.edge[k][i]);
-        gather_four<Number>(joint_force, indices<R>(joint), loaded.joint[k]);
+    if constexpr (!is_single<R>)
+      for (int k = 0; k < 3; ++k) {
+        if constexpr (width_of<R> == 1) {
+          const JointForce own =
+              converted<double>(read_record_now(&joint_force[joint_of(loaded.edge[k][0])]));
+          __builtin_memcpy(loaded.joint[k], &own, sizeof own);
+        } else {
+          Index joint[width_of<R>];
+          for (Index i = 0; i < width_of<R>; ++i) joint[i] = joint_of(loaded.edge[k][i]);
+          gather_four<Stores>(joint_force, indices<R>(joint), loaded.joint[k]);
+        }
       }
-    }
   }
   /// Triangle t, or t and its neighbours in a pack.
   template <class R>
   BR_HD void update(Index t, const Loaded<R>& loaded) const {
-    Vec2Of<R> sum[3];
-    deform(t, loaded, sum);
+    if constexpr (is_single<R>) {
+      update_pack_in_single<R>(t);
+    } else if constexpr (in_single) {
+      Vec2Of<R> sum[1][3];
+      deform_in_single<Single>(t, {loaded.law.at}, {loaded.viscosity}, sum,
+                               [&loaded](Index, bool bedded) {
+                                 return strains_of<R>(loaded.nodes, loaded.inverse, bedded);
+                               });
+      add_all(t, loaded, sum[0]);
+    } else {
+      Vec2Of<R> sum[3];
+      deform(t, loaded, sum);
+      add_all(t, loaded, sum);
+    }
+  }
+  BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
+
+ private:
+  template <class R>
+  BR_HD void load_edges(Index t, Loaded<R>& loaded) const {
+    for (int k = 0; k < 3; ++k)
+      for (Index i = 0; i < width_of<R>; ++i) loaded.edge[k][i] = read_now(&edges[t + i].at[k]);
+  }
+  template <class R>
+  BR_HD void load_couples(Index t, Loaded<R>& loaded) const {
+    loaded.couples = read_now(&couples.starts[t]);
+    loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
+  }
+  /// Adds forces of joints and couples to internal ones, and stores the sums.
+  template <class R>
+  BR_HD void add_all(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3]) const {
     for (int k = 0; k < 3; ++k)
       add_force(is_b<R>(loaded.edge[k]), loaded.joint[k], sum[k], sum[k == 2 ? 0 : k + 1]);
     if constexpr (width_of<R> == 1) add_couples(loaded.couples, loaded.couples_end, sum);
@@ -92,9 +129,6 @@ struct TriangleForces {
     if (width_of<R> != 1 && loaded.couples < loaded.couples_end)
       for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
   }
-  BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
-
- private:
   /// Internal forces on the corners, and the work of viscosity.
   template <class R>
   BR_HD void deform(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3]) const {
@@ -113,6 +147,76 @@ struct TriangleForces {
       const Sym2Of<R> rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
       const R area = 0.5 * cross(c.x[1] - c.x[0], c.x[2] - c.x[0]);
       store(viscous_work, t, load<R>(viscous_work, t) + span * (eta * area * contract(rate, rate)));
+    }
+  }
+  template <class R>
+  BR_HD static TriangleStrains<R> strains_of(const Columns<R, TriangleNodes>& nodes,
+                                             const Columns<R, Mat2>& inverse, bool bedded) {
+    const CornersOf<R> c(nodes.numbers);
+    const R(&i)[4] = inverse.numbers;
+    return strains(Mat2Of<R>{i[0], i[1], i[2], i[3]}, c.x, c.v, bedded);
+  }
+  template <class S>
+  void update_pack_in_single(Index t) const {
+    using W = PartOf<S>;
+    constexpr Index count = PartsOf<S>::count, width = width_of<W>;
+    Index at[width_of<S>];
+    __builtin_memcpy(at, law.data + t, sizeof at);
+    W eta[count];
+    for (Index p = 0; p < count; ++p) eta[p] = load<W>(viscosity, t + p * width);
+    Vec2Of<W> sum[count][3];
+    deform_in_single<S>(t, at, eta, sum, [this, t](Index p, bool bedded) {
+      Columns<W, TriangleNodes> corners;
+      Columns<W, Mat2> inverse;
+      corners.read(nodes, t + p * width);
+      inverse.read(shape_inverse, t + p * width);
+      return strains_of<W>(corners, inverse, bedded);
+    });
+    for (Index p = 0; p < count; ++p) {
+      Loaded<W> loaded;
+      load_edges(t + p * width, loaded);
+      load_couples(t + p * width, loaded);
+      load_late(t + p * width, loaded);
+      add_all(t + p * width, loaded, sum[p]);
+    }
+  }
+  /// As deform(), in single precision. @param at, viscosities  of each
+  /// @param measure  measure(p, bedded): the strains of part p in double
+  template <class S, class Measure>
+  BR_HD void deform_in_single(Index t, const Index (&at)[width_of<S>],
+                              const PartOf<S> (&viscosities)[PartsOf<S>::count],
+                              Vec2Of<PartOf<S>> (&sum)[PartsOf<S>::count][3],
+                              const Measure& measure) const {
+    using W = PartOf<S>;
+    constexpr Index count = PartsOf<S>::count;
+    S numbers[8];
+    gather_floats(laws_in_single, at, numbers);
+    const ElasticLaw<S> elastic{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]},
+                                numbers[5], numbers[6], numbers[7]};
+    const bool bedded = any(elastic.is_bedded());
+    const auto wide = parts_by<S>([&](Index p) { return measure(p, bedded); });
+    const Deformation<S> d(narrowed_record<S>(wide.part));
+    S eta;
+    if constexpr (count == 1)
+      eta = narrowed(viscosities[0]);
+    else
+      eta = narrowed(Wide<S>{{viscosities[0], viscosities[1]}});
+    Vec2Of<S> pull[2];
+    corner_forces(elastic.stress(d, eta), d.taken.edge, pull);
+    for (int k = 0; k < 2; ++k) {
+      const auto x = widened(pull[k].x), y = widened(pull[k].y);
+      for (Index p = 0; p < count; ++p) sum[p][k + 1] = {part_of<W>(x, p), part_of<W>(y, p)};
+    }
+    for (Index p = 0; p < count; ++p) sum[p][0] = -(sum[p][1] + sum[p][2]);
+    if (any(eta > 0.0)) {
+      const Mat2Of<S>& l = d.velocity_gradient;
+      const Sym2Of<S> rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
+      const S area = 0.5 * cross(d.taken.edge[0], d.taken.edge[1]);
+      const auto power = widened(eta * area * contract(rate, rate));
+      for (Index p = 0; p < count; ++p) {
+        const Index first = t + p * width_of<W>;
+        store(viscous_work, first, load<W>(viscous_work, first) + span * part_of<W>(power, p));
+      }
     }
   }
   BR_HD Index joint_of(Index entry) const {
@@ -155,8 +259,8 @@ struct TriangleForces {
         continue;
       }
 #endif
-      const CoupleForceOf<Number>& f = couple_force[pair_of(entry)];
-      const CornerVectors<Number>& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
+      const CoupleForceOf<Stores>& f = couple_force[pair_of(entry)];
+      const CornerVectors<Stores>& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
       for (int k = 0; k < 3; ++k) sum[k] += converted<double>(mine.at[k]);
     }
   }

@@ -95,6 +95,59 @@ TEST(ElasticTriangle, feels_no_rotation) {
   }
 }
 
+/// A triangle in single precision, from what is taken in double of its corners.
+Deformation<Single> in_single(const Example& e, bool bedded) {
+  const TriangleStrains<double> taken[1] = {strains(e.shape_inverse, e.x, e.v, bedded)};
+  return Deformation<Single>(narrowed_record<Single>(taken));
+}
+ElasticLaw<Single> in_single(const ElasticTriangle& law) {
+  const ElasticLaw<float> f = in_floats(law);
+  return {Single(f.lambda),
+          Single(f.shear),
+          {Single(f.preset.xx), Single(f.preset.yy), Single(f.preset.xy)},
+          Single(f.tilt),
+          Single(f.bend),
+          Single(f.planes)};
+}
+
+/// However small its strain is and however far it has turned, single precision loses some
+/// roundings, 2^-24 each, of the stresses that add up: of strain, in situ, of bedding. Of F alone
+/// it would lose 2^-24 of E.
+TEST(ElasticTriangle, in_single_precision_loses_a_few_roundings_of_its_stress) {
+  constexpr double some = 16 * 0x1p-24;
+  for (const bool preset : {false, true})
+    for (const bool bedded : {false, true}) {
+      ElasticTriangle law = law_of(false);
+      if (preset) law.preset = {-20e6, -8e6, 3e6};
+      if (bedded) law.tilt = -4e9, law.bend = 3e9, law.planes = 0.7;
+      for (const double strain : {1e-9, 1e-6, 1e-3, 0.2})
+        for (int turn = 0; turn < 12; ++turn) {
+          Example e({1.0 + strain, 0.2 * strain, 0.3 * strain, 1.0 - 0.6 * strain});
+          for (Vec2& x : e.x) x = rotated(x, turn * pi / 6.0 + 0.1);
+          const Sym2 exact = law.stress(e.now(), 0.0);
+          const Sym2Of<Single> s =
+              in_single(law).stress(in_single(e, bedded), constant<Single>(0.0));
+          const double size = (3.0 * (law.lambda + 2.0 * law.shear) + 4.0 * std::abs(law.tilt) +
+                               4.0 * std::abs(law.bend)) *
+                                  strain +
+                              (preset ? 40e6 : 0.0);
+          EXPECT_NEAR(widened(s.xx), exact.xx, some * size) << strain << ", turned " << turn;
+          EXPECT_NEAR(widened(s.yy), exact.yy, some * size) << strain << ", turned " << turn;
+          EXPECT_NEAR(widened(s.xy), exact.xy, some * size) << strain << ", turned " << turn;
+        }
+    }
+}
+
+TEST(ElasticTriangle, feels_no_rotation_in_single_precision) {
+  for (int i = 1; i < 12; ++i) {
+    Example e;
+    for (int k = 0; k < 3; ++k) e.x[k] = rotated(e.reference[k], 0.3 + i * pi / 6.0);
+    const Sym2Of<Single> s =
+        in_single(law_of(true)).stress(in_single(e, false), constant<Single>(0.0));
+    EXPECT_LT(abs(widened(s.xx)) + abs(widened(s.yy)) + abs(widened(s.xy)), 1e-14 * young);
+  }
+}
+
 /// Forces are minus the gradient of the energy, with and without an in-situ stress.
 TEST(ElasticTriangle, forces_are_the_gradient_of_its_energy) {
   for (const bool preset : {false, true}) {

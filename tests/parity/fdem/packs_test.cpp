@@ -90,7 +90,7 @@ void expect_same_in_packs(const char* criterion, const char* precision, double p
 }
 
 TEST(FdemPacks, book_and_keep_what_one_by_one_does) {
-  for (const char* const precision : {"double", "mixed"}) {
+  for (const char* const precision : {"double", "mixed", "single"}) {
     expect_same_in_packs("rock", precision, -4.0, fdem::Failure::sheared);
     expect_same_in_packs("rock", precision, 1.0, fdem::Failure::torn);
     expect_same_in_packs("edge", precision, -4.0, fdem::Failure::none);

@@ -64,7 +64,7 @@ TEST(FdemSameBits, for_any_width_of_vector) {
 
 /// The ledger, too: a hash holds no work of couples.
 TEST(FdemSameBits, of_every_number_of_couples_for_any_width_of_vector) {
-  for (const char* precision : {"double", "mixed"}) {
+  for (const char* precision : {"double", "mixed", "single"}) {
     Scene scene = impact();
     scene.config.precision = precision;
     fdem::World one = scene.world(1), w = scene.world(1);
@@ -222,12 +222,16 @@ TEST(FdemSameBits, of_joints_that_wake_in_the_shadow_space) {
 }
 
 /// Rock that is stiffer along its planes, beside rock that is not.
-TEST(FdemSameBits, of_bedded_rock_for_any_threads_width_of_vector_and_space) {
+void expect_one_hash_of_bedded_rock(const char* precision) {
+  SCOPED_TRACE(precision);
   Scene scene = impact();
   fdem::MaterialConfig disc = scene.config.materials[0];
   disc.name = "shale";
   disc.bedding = {0.5, 0.6, 15e9, 0.15, 6e9};
   scene.config.materials.push_back(disc);
+  scene.config.precision = precision;
+  scene.config.in_situ.xx_slope = {0.0, 3e6};  // each triangle and joint has its own
+  scene.config.in_situ.xx = scene.config.in_situ.yy = -1e3;
   for (std::size_t t = 0; t < scene.model.material.size(); ++t)
     if (scene.model.group[t] == 0 && t % 3 != 0) scene.model.material[t] = 1;
   std::uint64_t expected = 0;
@@ -240,9 +244,13 @@ TEST(FdemSameBits, of_bedded_rock_for_any_threads_width_of_vector_and_space) {
       EXPECT_EQ(hash, expected) << static_cast<int>(lanes) << ", " << threads;
     }
   EXPECT_NE(expected, reference());
-  Exec shadow;
+  Exec shadow = in_precision({}, precision);
   shadow.space = Space::shadow;
   EXPECT_EQ(hash_after(fdem::make_world(scene.config, scene.model, shadow)), expected);
+}
+TEST(FdemSameBits, of_bedded_rock_for_any_threads_width_of_vector_and_space) {
+  expect_one_hash_of_bedded_rock("double");
+  expect_one_hash_of_bedded_rock("single");
 }
 
 TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
@@ -271,9 +279,11 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
   }
 }
 
-TEST(FdemSameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space) {
+/// @returns the hash
+std::uint64_t expect_one_hash(const char* precision) {
+  SCOPED_TRACE(precision);
   Scene scene = impact();
-  scene.config.precision = "mixed";
+  scene.config.precision = precision;
   std::uint64_t expected = 0;
   for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight})
     for (const int threads : {1, 2}) {
@@ -285,15 +295,21 @@ TEST(FdemSameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space)
       EXPECT_EQ(hash, expected) << static_cast<int>(lanes) << ", " << threads;
     }
   EXPECT_NE(expected, reference());
-  Exec shadow = in_precision({}, "mixed");
+  Exec shadow = in_precision({}, precision);
   shadow.space = Space::shadow;
   EXPECT_EQ(hash_after(fdem::make_world(scene.config, scene.model, shadow)), expected);
+  return expected;
 }
 
-TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
+TEST(FdemSameBits, in_other_precisions_for_any_threads_width_of_vector_and_space) {
+  EXPECT_NE(expect_one_hash("mixed"), expect_one_hash("single"));
+}
+
+void expect_same_across_a_checkpoint(const char* precision) {
+  SCOPED_TRACE(precision);
   const ScratchFolder folder;
   Scene scene = impact();
-  scene.config.precision = "mixed";
+  scene.config.precision = precision;
   const auto before = make_method(scene.config, scene.model, {});
   for (int i = 0; i < 163; ++i) before->advance({});
   CheckpointWriter writer;
@@ -310,6 +326,10 @@ TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   scene.config.precision = "double";
   EXPECT_THROW(make_method(scene.config, scene.model, {})->load(&state), CheckpointError);
+}
+TEST(FdemSameBits, in_other_precisions_across_a_checkpoint_that_double_refuses) {
+  expect_same_across_a_checkpoint("mixed");
+  expect_same_across_a_checkpoint("single");
 }
 
 TEST(FdemSameBits, one_changed_bit_changes_the_hash) {
