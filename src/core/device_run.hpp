@@ -120,34 +120,46 @@ class RunningAhead {
  public:
   static constexpr std::int64_t few = 4;  ///< steps of a graph: even; its first clock is the last
 
+  /// @param pace  StepGraph::pace
+  explicit RunningAhead(double& pace) : pace_(pace) {}
   /// Steps have begun after a halt.
   void begin() { begun_ = Clock::now(); }
   /// So many have been taken since.
   void see(std::int64_t steps) {
     if (steps >= few)
-      step_ =
+      pace_ =
           std::chrono::duration<double>(Clock::now() - begun_).count() / static_cast<double>(steps);
   }
-  /// Enough to bridge the host's absence; the fewer, the fewer are let pass after a halt.
+  /// Enough to bridge the host's absence; the fewer, the fewer are let pass after a halt, which
+  /// read nearly as much as steps do. At least two: the next step counts the one before.
   std::int64_t ahead() const {
-    if (!(step_ > 0.0)) return most;
-    const double steps = std::ceil(absence / (step_ * few)) * few;
+    if (is_long()) return 2;
+    if (!(pace_ > 0.0)) return most;
+    const double steps = std::ceil(absence / (pace_ * few)) * few;
     return steps < static_cast<double>(most) ? static_cast<std::int64_t>(steps) : most;
   }
-  /// Where steps take longer than to launch them, a record pays only where it is repeated often.
-  bool records(std::int64_t launched) const { return step_ < slow_step || launched >= 64; }
+  /// Whether steps are recorded. Where they take longer than to launch them, a record pays only
+  /// where it is repeated often.
+  bool records(std::int64_t launched) const {
+    return !is_long() && (pace_ < slow_step || launched >= 64);
+  }
+  /// Whether a record is replayed.
+  bool replays() const { return !is_long(); }
 
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::int64_t most = 12;
   static constexpr double absence = 2e-4, slow_step = 4e-5;  // [s]
+  bool is_long() const { return pace_ > absence; }
   Clock::time_point begun_;
-  double step_ = 0.0;  // [s]; 0: not known yet
+  double& pace_;
 };
 
 /// Takes steps on a device until `stop`, or until about `slice` has passed.
 ///
-/// @param launch_step  launches all kernels of one step by its StepClocks; the first one is Opening
+/// @param launch_step  launches all kernels of one step by its StepClocks; the first one is
+///                     Opening. If it takes a truth, too: whether the host has ended the step
+///                     before
 /// @param launch_forces_only  launches those after the move, wrapped as before it: the clock starts
 /// there
 /// @param on_halt      what the host does when the clock halts in the middle of a step, told why:
@@ -159,13 +171,20 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
                    const LaunchForcesOnly& launch_forces_only, const OnHalt& on_halt) {
   constexpr std::chrono::milliseconds slice{50};
   const auto begin = std::chrono::steady_clock::now();
-  RunningAhead running;
+  RunningAhead running(graph.pace);
   const auto late = [&] { return std::chrono::steady_clock::now() - begin > slice; };
   const bool shadow = clock.space() == Space::shadow;
-  const auto launch_two = [&] {
+  constexpr bool is_told = std::is_invocable_v<LaunchStep, const StepClocks&, bool>;
+  const auto launch_one = [&](const StepClocks& clocks, bool follows_host) {
+    if constexpr (is_told)
+      launch_step(clocks, follows_host);
+    else
+      launch_step(clocks);
+  };
+  const auto launch_two = [&](bool follows_host) {
     StepClock* const c = clock.data();
-    launch_step(StepClocks{c, c + 1});
-    launch_step(StepClocks{c + 1, c});
+    launch_one(StepClocks{c, c + 1}, follows_host);
+    launch_one(StepClocks{c + 1, c}, false);
   };
   Advanced taken;
   std::int32_t open = 0;
@@ -179,20 +198,23 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
     running.begin();
     for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
       if (launched - seen < (LaunchTimes::wanted() ? 2 : running.ahead())) {
+        const bool follows_host = is_told && launched == 0 && open == 0;
         if (LaunchTimes::wanted()) {  // a graph has none
-          launch_two();
+          launch_two(follows_host);
           if (!shadow) wait_for_device();
           launched += 2;
           continue;
         }
-        if (graph.empty() && !shadow && !running.records(launched)) {
-          launch_two();
+        const bool by_hand =
+            !shadow && (graph.empty() ? !running.records(launched) : !running.replays());
+        if (follows_host || by_hand) {
+          launch_two(follows_host);
           launched += 2;
           continue;
         }
         if (graph.empty())
           graph.record(clock.space(), [&] {
-            for (std::int64_t i = 0; i < RunningAhead::few; i += 2) launch_two();
+            for (std::int64_t i = 0; i < RunningAhead::few; i += 2) launch_two(false);
           });
         graph.replay();
         launched += RunningAhead::few;

@@ -47,6 +47,8 @@ class StepGraph {
   /// Runs the recorded launches once. @throws DeviceError
   void replay() const;
 
+  double pace = 0.0;  ///< how long a step took when that was last seen; 0: not yet  [s]
+
  private:
   struct Recorded;
   void begin();

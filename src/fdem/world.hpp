@@ -26,6 +26,7 @@
 #include "fdem_shared/held_couples.hpp"
 #include "fdem_shared/rigid.hpp"
 #include "fdem_shared/stable_parts.hpp"
+#include "fdem_shared/summed_apart.hpp"
 
 namespace breccia::fdem {
 
@@ -97,8 +98,9 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, couple_phase, node_vertex, side_across,
          border_vertex, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
-         reach_place, clock, device_flags, held_couples.item, busy.item, busy.listed, busy.count,
-         busy_joints.item, busy_joints.listed, busy_joints.count, ringed, rows);
+         reach_place, clock, device_flags, held_couples.item, summed_apart.marked,
+         summed_apart.group, busy.item, busy.listed, busy.count, busy_joints.item,
+         busy_joints.listed, busy_joints.count, ringed, rows);
   }
 
   // State: what a checkpoint holds.
@@ -149,6 +151,7 @@ struct World {
   Buffer<Index> reach_place;              ///< in `reach`, -1: a ghost, or it cannot touch  [-]
                                           ///< (triangles; search, derive)
   fdem_shared::HeldCouples held_couples;  ///< (held couples; servo)
+  fdem_shared::SummedApart summed_apart;  ///< (groups of triangles; sums)
 
   // Results of a step, overwritten by the next one.
   Buffer<Motion> motions;        ///< of supports, mid-step  [m/s]  (motions; move)
@@ -231,6 +234,8 @@ bool follow_marks(World& w);
 void expect_marks(World& w);
 void find_couples(World& w);
 void wake_joints(World& w);
+/// Whether other elements than those that are summed apart are worth a sum and a move at one go.
+bool moves_most_at_once(World& w);
 /// Case::free_step of a whole model.  [s]
 double free_time_step(World& w);
 /// Safe share of the stable step of all triangles, rounded down to six bits.  [s]

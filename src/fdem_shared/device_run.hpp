@@ -87,6 +87,7 @@ struct ScaleLoads {
 template <class Move>
 struct MoveAndWatch {
   static constexpr const char* name = "fdem.move_and_watch";
+  static constexpr int least_blocks = least_blocks_of<Move>();
   Move move;
   View<const std::uint8_t> changed;  ///< flags of Change
   std::int32_t* host_request;        ///< gets request_search where a margin is used up, or
@@ -211,22 +212,21 @@ void DeviceRunOf<Launches, Base, World>::sum_forces(World& w) {
 
 /// Launches that a device's clock leads; after a search take_forces() goes on by a run that stands
 /// `after_search`.
+/// @param sums_due     whether the move sums forces up, as the step before has left it to do
+/// @param leaves_sums  whether the step leaves that to the move of the next one
 template <class Launches, Phase phase, class World>
 class ClockedRun : public ClockLed {
  public:
   using Shape = ShapeOf<World>;
-  explicit ClockedRun(const StepClocks& clocks) : clocks_(clocks), timed_{clocks} {}
+  ClockedRun(const StepClocks& clocks, bool sums_due, bool leaves_sums)
+      : clocks_(clocks), timed_{clocks}, sums_due_(sums_due), leaves_sums_(leaves_sums) {}
 
   void move_boundary(World& w) const {
-    const auto motions = static_cast<Index>(w.prescribed.size());
-    const EndOfStep<AllowedStep> end = end_of_step(w);
-    const MoveAndWatch<typename Shape::Move> move{world_move(w), w.exposed.changed.view(),
-                                                  &clocks_.now->host_request, nullptr};
-    const Index elements = Shape::elements(w).size();
-    if (motions == 0 || scales_next(w))
-      return for_each_part(w.exec, part(elements, clocks_.opening(move, end, true), Parts<>{}));
-    for_each(w.exec, motions, clocks_.opening(scale_motions(w), end, true));
-    for_each_part(w.exec, part(elements, clocks_.timed<Phase::in_move>(move), Parts<>{}));
+    if constexpr (moves_at_once<World>)
+      if (sums_due_)
+        return Launches::with_sums(w,
+                                   [&](const auto& sums) { move_all(w, sum_and_move(w, sums)); });
+    move_all(w, world_move(w));
   }
   void insert_joints(World& w) const {
     watch_for_waking(w, timed_, &clocks_.now->host_request, request_insertion);
@@ -245,6 +245,11 @@ class ClockedRun : public ClockLed {
     const Index elements = Shape::elements(w).size(), threads = stable.threads;
     Launches::with_sums(w, [&](const auto& kernel) {
       using Kernel = std::remove_cvref_t<decltype(kernel)>;
+      if constexpr (moves_at_once<World>)
+        if (leaves_sums_)
+          return for_each_part(w.exec, part(threads, timed_(stable),
+                                            part(w.summed_apart.threads(),
+                                                 timed_(sum_apart(w, kernel)), Parts<>{})));
       if constexpr (Launches::blocks_of_sums > 0)
         if (elements >= fewest_summed_apart(w.exec.space)) {
           const Bounded<Kernel, Launches::blocks_of_sums> sums{kernel};
@@ -279,6 +284,18 @@ class ClockedRun : public ClockLed {
   }
 
  private:
+  template <class Move>
+  void move_all(World& w, const Move& how) const {
+    const auto motions = static_cast<Index>(w.prescribed.size());
+    const EndOfStep<AllowedStep> end = end_of_step(w);
+    const MoveAndWatch<Move> move{how, w.exposed.changed.view(), &clocks_.now->host_request,
+                                  nullptr};
+    const Index elements = Shape::elements(w).size();
+    if (motions == 0 || scales_next(w))
+      return for_each_part(w.exec, part(elements, clocks_.opening(move, end, true), Parts<>{}));
+    for_each(w.exec, motions, clocks_.opening(scale_motions(w), end, true));
+    for_each_part(w.exec, part(elements, clocks_.timed<Phase::in_move>(move), Parts<>{}));
+  }
   template <class Stable>
   NoteStable<Stable> noting(const World& w, const Stable& stable, Index count) const {
     constexpr Index most_threads = 132 * 128;
@@ -288,6 +305,7 @@ class ClockedRun : public ClockLed {
 
   StepClocks clocks_;
   ByClock<phase> timed_;
+  bool sums_due_, leaves_sums_;
 };
 
 /// Tables that the launches read besides the state.
@@ -322,18 +340,34 @@ void scale_motions_now(World& w) {
   list_motions(w);
 }
 
+/// The sums that steps have left to a move that does not come.
+template <class Launches, class World>
+void sum_others_at_once(World& w) {
+  const ShadowLaunches launches;
+  for_each(w.exec, 1, Fence{});
+  Launches::with_sums(w, [&w](const auto& kernel) {
+    for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), AtOnce{}(sum_others(w, kernel)),
+                               Parts<>{}));
+  });
+}
+
 /// Takes steps by launches ahead, led by the device's clock.
 template <class Launches, class World>
 Advanced advance_mesh(World& w, const StopAt& stop) {
   if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
   scale_motions_now(w);
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
+  bool at_once = false;
+  if constexpr (moves_at_once<World>) at_once = moves_most_at_once(w);
+  std::int64_t summed_up = w.step;  // all forces are in memory after so many steps
   using AfterMove = ClockedRun<Launches, Phase::after_move, World>;
   using AfterSearch = ClockedRun<Launches, Phase::after_search, World>;
   const Advanced taken = run_ahead(
       w.clock, w.graph, end_of_step(w), host, stop,
-      [&](const StepClocks& clocks) { take_step(AfterMove(clocks), w); },
-      [&](const StepClocks& clocks) { take_forces(AfterSearch(clocks), w); },
+      [&](const StepClocks& clocks, bool follows_host) {
+        take_step(AfterMove(clocks, at_once && !follows_host, at_once), w);
+      },
+      [&](const StepClocks& clocks) { take_forces(AfterSearch(clocks, false, at_once), w); },
       [&](std::int32_t host_request) {
         if (host_request == request_marks || host_request == request_search) {
           w.margin_used = host_request == request_search;
@@ -344,8 +378,11 @@ Advanced advance_mesh(World& w, const StopAt& stop) {
           if (host_request == request_room) Launches::go_on(w);
         evaluate_forces(w);
         scale_motions_now(w);
+        summed_up = w.step + 1;
         return true;
       });
+  if constexpr (moves_at_once<World>)
+    if (at_once && w.step > summed_up) sum_others_at_once<Launches>(w);
   if (scales_next(w)) copy_to(w.motions, w.last_motions);
   return taken;
 }

@@ -12,6 +12,7 @@
 #include "exec/timers.hpp"
 #include "fdem_shared/bundle_steps.hpp"
 #include "fdem_shared/insertion_kernels.hpp"
+#include "fdem_shared/summed_apart.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -104,6 +105,7 @@ Woken wake(World& w, const Buffer<Index>& joints) {
 /// Marks the corners that rings hold.
 template <class World>
 void mark_ringed(World& w) {
+  forget_apart(w);
   w.ringed.resize(0);
   if (w.bundles.nodes.size() == 0) return;
   w.ringed.resize(ShapeOf<World>::corners * ShapeOf<World>::elements(w).size());

@@ -96,9 +96,19 @@ struct CountLists : Sums {
 
   template <class Read>
   BR_HD void update(Index i, const Read& loaded) const {
+    count(i);
+    Sums::update(i, loaded);
+  }
+  template <class Read, class Numbers>
+  BR_HD void sum(Index i, const Read& loaded, Numbers& numbers) const {
+    count(i);
+    Sums::sum(i, loaded, numbers);
+  }
+
+ private:
+  BR_HD void count(Index i) const {
     if (i == 0 && couples != nullptr) couples[0] = couples[1];
     if (i == 0 && joints != nullptr) joints[0] = joints[1];
-    Sums::update(i, loaded);
   }
 };
 

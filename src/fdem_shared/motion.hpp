@@ -208,6 +208,12 @@ struct MoveOf {
   /// All but the sums of forces.
   template <class R>
   BR_HD void load_early(Index t, Loaded<R>& loaded) const {
+    begin_loading(t, loaded);
+    loaded.nodes.wait();
+  }
+  /// As that, while the corners are still on their way.
+  template <class R>
+  BR_HD void begin_loading(Index t, Loaded<R>& loaded) const {
     for (Index k = 0; k < width_of<R>; ++k) {
       loaded.place[k] = read_now(&used.place[t + k]);
       loaded.hold[k] = read_now(&kick.hold[t + k]);
@@ -219,7 +225,6 @@ struct MoveOf {
       loaded.from = read_record_now(&used.reference[loaded.place[0]]);
       loaded.margin = read_now(&used.margin[loaded.place[0]]);
     }
-    loaded.nodes.wait();
   }
   template <class R>
   BR_HD void load_late(Index t, Loaded<R>& loaded) const {
@@ -228,6 +233,11 @@ struct MoveOf {
   template <class R>
   BR_HD Moved update(Index t, Loaded<R>& loaded) const {
     loaded.force.wait();
+    return go(t, loaded);
+  }
+  /// The move, when all is there.
+  template <class R>
+  BR_HD Moved go(Index t, Loaded<R>& loaded) const {
     if constexpr (width_of<R> == 1) {
       if (kick.damping > 0.0 || external.size > 0 || loaded.hold[0] >= 0)
         move_driven(t, loaded);

@@ -2,6 +2,7 @@
 // The move of elements by packs, which tells whether one has used its margin up.
 
 #include "exec/types.hpp"
+#include "exec/whole_packs.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -24,5 +25,14 @@ struct NotingPacks {
     return moved.end;
   }
 };
+
+/// Moves elements by packs. @returns whether one has used its margin up
+template <class Eight, class Four, class Move>
+bool move_packs(Lanes lanes, const Move& kernel, Index begin, Index end) {
+  bool beyond = false;
+  run_whole_packs<NotingPacks<Eight>, NotingPacks<Four>>(lanes, NotingMove{kernel, beyond}, begin,
+                                                         end);
+  return beyond;
+}
 
 }  // namespace breccia::fdem_shared

@@ -14,6 +14,7 @@
 #include "fdem_shared/rigid_bodies.hpp"
 #include "fdem_shared/shape.hpp"
 #include "fdem_shared/stepwise_run.hpp"
+#include "fdem_shared/sum_and_move.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -70,6 +71,21 @@ auto world_move(World& w) {
               e.damping_work.view(),
               e.load_work.view(),
               used};
+}
+
+/// Kernels of sum_and_move.hpp over the arrays of a world whose SummedApart is known.
+template <class World, class Sums>
+SumApart<Sums> sum_apart(const World& w, const Sums& sums) {
+  return {sums, w.summed_apart.group.view(), ShapeOf<World>::elements(w).size()};
+}
+template <class World, class Sums>
+SumOthers<Sums> sum_others(const World& w, const Sums& sums) {
+  return {sums, {w.summed_apart.marked.view()}};
+}
+template <class World, class Sums>
+auto sum_and_move(World& w, const Sums& sums) {
+  using Move = typename ShapeOf<World>::Move;
+  return SumAndMove<Sums, Move>{sums, world_move(w), {std::as_const(w.summed_apart.marked).view()}};
 }
 
 /// Velocities of supports at the middle of the step to come, into World::motions.

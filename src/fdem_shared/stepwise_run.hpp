@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/step_clock.hpp"
 #include "domain/domain.hpp"
 #include "exec/shadow_launches.hpp"
 
@@ -29,11 +30,19 @@ struct StepwiseRun {
   void count_step(World& w) const { w.step += 1; }
 };
 
-/// Loops on the host that move elements: first those that other ranks wait for, then the others.
+/// Loops on the host that move elements, first those that other ranks wait for, then the others,
+/// and sum forces up.
 template <class Base, class World>
 struct MovingRun : Base {
   void move_boundary(World& w) const;
-  void move_interior(World& w) const;
+  void move_interior(World& w);
+  void sum_up(World& w);
+
+  /// Whether another step follows the one whose forces are evaluated at the time of `w`.
+  bool goes_on(const World& w) const { return w.time < until.time && w.step + 1 < until.step; }
+
+  StopAt until{0.0, 0};   ///< steps follow each other at once before that
+  bool sums_due = false;  ///< the next move sums forces up
 };
 
 /// Launches at once, of a device. @tparam Launches  see device_run.hpp

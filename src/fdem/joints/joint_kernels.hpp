@@ -128,11 +128,17 @@ struct JointForces {
 
   /// One joint: false only where it softens, breaks, or has a force though it is parted.
   BR_HD bool update_at(const StepTime& now, Index i, const Loaded<double>& loaded) const {
+    return update_by(i, loaded,
+                     [&, this] { work[i].slide += spent_on_slips(i, loaded, now.last_dt); });
+  }
+  /// As that. @param book  books the slip of a joint that stays whole
+  template <class Book>
+  BR_HD bool update_by(Index i, const Loaded<double>& loaded, const Book& book) const {
     if (is_quiet(i, loaded)) return true;
     if (loaded.stage != JointStage::whole) return false;
     const WholeOf<Computed> w = whole_in_run(i, loaded);
     if (w.beyond) return false;
-    if (w.drags) work[i].slide += spent_on_slips(i, loaded, now.last_dt);
+    if (w.drags) book();
     store_four<Stores>(force, i, w.force);
     return true;
   }
@@ -229,10 +235,15 @@ struct JointForces {
   /// @param drags  of i and its neighbours, a bit for each
   template <class R>
   BR_HD void book_slips(Index i, unsigned drags) const {
+    book_slips<R>(i, drags, dt);
+  }
+  /// @param span  of the step  [s]
+  template <class R>
+  BR_HD void book_slips(Index i, unsigned drags, double span) const {
     Loaded<R> loaded;
     load_early(i, loaded);
     load_late(i, loaded);
-    const R sum = spent_on_slips(i, loaded, dt);
+    const R sum = spent_on_slips(i, loaded, span);
     if constexpr (width_of<R> == 1) {
       work[i].slide += sum;
     } else {

@@ -41,6 +41,14 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
   for (; t + width_of<Pack> <= end; t += width_of<Pack>) run_at<Pack>(triangles, t);
   return t;
 }
+template <class Pack, class Move>
+MovedTo move_all(const Move& kernel, Index begin, Index end) {
+  MovedTo moved{begin, false};
+  for (; moved.end + width_of<Pack> <= end; moved.end += width_of<Pack>) {
+    if (run_at<Pack>(kernel, moved.end) == Moved::beyond) moved.beyond = true;
+  }
+  return moved;
+}
 
 }  // namespace
 
@@ -90,11 +98,16 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
   return run_couples<WidestPack>(kernel, begin, end);
 }
 [[gnu::flatten]] MovedTo BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {
-  MovedTo moved{begin, false};
-  for (; moved.end + width <= end; moved.end += width) {
-    if (run_at<WidestPack>(kernel, moved.end) == Moved::beyond) moved.beyond = true;
-  }
-  return moved;
+  return move_all<WidestPack>(kernel, begin, end);
+}
+[[gnu::flatten]] MovedTo BR_PACKS::run(const SumAndMove<double>& kernel, Index begin, Index end) {
+  return move_all<WidestPack>(kernel, begin, end);
+}
+[[gnu::flatten]] MovedTo BR_PACKS::run(const SumAndMove<float>& kernel, Index begin, Index end) {
+  return move_all<WidestPack>(kernel, begin, end);
+}
+[[gnu::flatten]] MovedTo BR_PACKS::run(const SumAndMove<Single>& kernel, Index begin, Index end) {
+  return move_all<SinglePack>(kernel, begin, end);
 }
 
 [[gnu::flatten]] Index BR_PACKS::add(const TriangleShares& kernel, Index begin, Index end,

@@ -33,6 +33,23 @@ using fdem_shared::NotListed;
 /// more, and can have the registers that suit them.
 constexpr Index fewest_joints_apart = 250'000;
 
+/// Books the slip of a whole joint in a function of its own, which reads it anew: numbers that are
+/// kept for it would fill the registers of all others.
+template <class Number>
+BR_COLD void book_slip(const JointForces<Number>* joints, double span, Index i) {
+  stay_in_place(joints);
+  joints->template book_slips<double>(i, 1, span);
+}
+/// Joints in a launch of their own, in the fewest registers that they fit.
+template <class Number>
+struct JointsApart : JointForces<Number> {
+  static constexpr int least_blocks = 8;
+  using Loaded = typename JointForces<Number>::template Loaded<double>;
+  BR_HD bool update_at(const StepTime& now, Index i, const Loaded& loaded) const {
+    return this->update_by(i, loaded, [&, this] { book_slip<Number>(this, now.last_dt, i); });
+  }
+};
+
 template <int blocks, class Kernel>
 Bounded<Kernel, blocks> bounded(const Kernel& kernel) {
   return {kernel};
@@ -73,7 +90,7 @@ void launch_kept_pairs(World& w, const By& by) {
     return part(joints, by(NotListed(kernel, SoftenedJoint(w), w.busy_joints)), Parts<>{});
   };
   if (joints < fewest_joints_apart) return launch(others(bounded<blocks_of_pairs>(joint)));
-  for_each_part(w.exec, others(bounded<8>(joint)));
+  for_each_part(w.exec, others(JointsApart<Number>{joint}));
   launch(Parts<>{});
 }
 
@@ -110,7 +127,7 @@ void launch_busy_pairs(World& w, const By& by) {
                   part(couples, list_couples,
                        part(joints, list_joints(bounded<blocks_of_pairs>(joint)), Parts<>{})));
   } else {
-    for_each_part(w.exec, part(joints, list_joints(bounded<8>(joint)), Parts<>{}));
+    for_each_part(w.exec, part(joints, list_joints(JointsApart<Number>{joint}), Parts<>{}));
     for_each_part(w.exec, part(couples, list_couples, Parts<>{}));
   }
   launch_busy<Number, any_couple>(w, by);
@@ -139,10 +156,9 @@ struct Launches {
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
-    with_arithmetic(w.exec.precision, [&](auto number) {
-      using Sums = TriangleForces<decltype(number)>;
-      visit(CountLists<Sums>{triangle_kernel<decltype(number)>(w), w.busy.count.data(),
-                             w.busy_joints.count.data()});
+    fdem::with_sums(w, [&](const auto& kernel) {
+      using Sums = std::remove_cvref_t<decltype(kernel)>;
+      visit(CountLists<Sums>{kernel, w.busy.count.data(), w.busy_joints.count.data()});
     });
   }
   static BundlesWide bundles(World& w) { return {bundle_kernel(w)}; }

@@ -34,7 +34,8 @@ void each_run_of_packs(const World& w, const Take& take, const Visit& visit) {
 
 }  // namespace
 
-bool move_range(const World& w, const MoveTriangles& kernel, Index begin, Index end) {
+template <class Kernel>
+bool move_range(const World& w, const Kernel& kernel, Index begin, Index end) {
   return run_packs(w.lanes, kernel, begin, end);
 }
 
@@ -84,13 +85,9 @@ void HostRun::pair_forces(World& w) const {
   couple_forces(w);
 }
 
-void HostRun::sum_forces(World& w) const {
+void HostRun::sum_forces(World& w) {
   const StageTime timed(w.exec, "triangle_forces");
-  with_arithmetic(w.exec.precision, [&](auto number) {
-    const auto kernel = triangle_kernel<decltype(number)>(w);
-    fdem_shared::each_run(w, w.domain.runs,
-                          [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
-  });
+  sum_up(w);
 }
 
 }  // namespace breccia::fdem

@@ -120,10 +120,16 @@ void run_packs(Lanes lanes, const CoupleForces<float>& kernel, Index begin, Inde
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
-  bool beyond = false;
-  run_whole_packs<fdem_shared::NotingPacks<PacksAvx512>, fdem_shared::NotingPacks<PacksAvx2>>(
-      lanes, fdem_shared::NotingMove{kernel, beyond}, begin, end);
-  return beyond;
+  return fdem_shared::move_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+bool run_packs(Lanes lanes, const SumAndMove<double>& kernel, Index begin, Index end) {
+  return fdem_shared::move_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+bool run_packs(Lanes lanes, const SumAndMove<float>& kernel, Index begin, Index end) {
+  return fdem_shared::move_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+bool run_packs(Lanes lanes, const SumAndMove<Single>& kernel, Index begin, Index end) {
+  return fdem_shared::move_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 
 Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {

@@ -7,8 +7,12 @@
 #include "fdem/joints/joint_lanes.hpp"
 #include "fdem/triangles/triangle_energies.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
+#include "fdem_shared/sum_and_move.hpp"
 
 namespace breccia::fdem {
+
+template <class Number>
+using SumAndMove = fdem_shared::SumAndMove<TriangleForces<Number>, MoveTriangles>;
 
 /// Items of a whole pack.
 template <class Kernel>
@@ -26,6 +30,9 @@ void run_packs(Lanes lanes, const CoupleForces<double>& kernel, Index begin, Ind
 void run_packs(Lanes lanes, const CoupleForces<float>& kernel, Index begin, Index end);
 /// @returns whether a triangle has used its margin up
 bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
+bool run_packs(Lanes lanes, const SumAndMove<double>& kernel, Index begin, Index end);
+bool run_packs(Lanes lanes, const SumAndMove<float>& kernel, Index begin, Index end);
+bool run_packs(Lanes lanes, const SumAndMove<Single>& kernel, Index begin, Index end);
 
 /// Where a move stopped, and whether a triangle before has used its margin up.
 struct MovedTo {
@@ -63,6 +70,9 @@ struct PacksAvx2 {
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+  static MovedTo run(const SumAndMove<double>& kernel, Index begin, Index end);
+  static MovedTo run(const SumAndMove<float>& kernel, Index begin, Index end);
+  static MovedTo run(const SumAndMove<Single>& kernel, Index begin, Index end);
   static Index add(const TriangleShares& kernel, Index begin, Index end, Energies& sum);
   static Index add(const WholeJoints& joints, Index begin, Index end, ExactSum& elastic);
 };
@@ -79,6 +89,9 @@ struct PacksAvx512 {
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+  static MovedTo run(const SumAndMove<double>& kernel, Index begin, Index end);
+  static MovedTo run(const SumAndMove<float>& kernel, Index begin, Index end);
+  static MovedTo run(const SumAndMove<Single>& kernel, Index begin, Index end);
   static Index add(const TriangleShares& kernel, Index begin, Index end, Energies& sum);
   static Index add(const WholeJoints& joints, Index begin, Index end, ExactSum& elastic);
 };

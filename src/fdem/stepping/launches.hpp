@@ -72,6 +72,13 @@ TriangleForces<Number> triangle_kernel(World& w) {
           t.viscous_work.view()};
 }
 
+/// Calls visit(kernel) with the kernel of the sums of forces.
+template <class Visit>
+void with_sums(World& w, const Visit& visit) {
+  with_arithmetic(w.exec.precision,
+                  [&](auto number) { visit(triangle_kernel<decltype(number)>(w)); });
+}
+
 inline LoadForces load_kernel(World& w) {
   Triangles& t = w.triangles;
   return {w.load_starts.view(),          w.loaded_edges.view(), w.load_laws.view(),

@@ -4,6 +4,8 @@
 #include "fdem/ranks.hpp"
 #include "fdem/shape.hpp"
 #include "fdem/stepping/launches.hpp"
+#include "fdem_shared/advance.hpp"
+#include "fdem_shared/mark_apart.hpp"
 #include "fdem_shared/stepping.hpp"
 
 namespace breccia::fdem {
@@ -70,6 +72,9 @@ void StepwiseRun::load_forces(World& w) const {
   fdem_shared::StepwiseRun<World>::load_forces(w);
 }
 
+bool moves_most_at_once(World& w) {
+  return fdem_shared::world_moves_most_at_once(w);
+}
 void share_bundle_forces(World& w) {
   StepwiseRun{}.bundle_forces(w);
 }
@@ -81,10 +86,7 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  if (!w.given->flow.on && w.given->bolts.empty() && !fdem_shared::turns_anything(w))
-    return advance_by_steps(w, stop);
-  step(w);  // places of cracks, bolts and axes are of the host in every step, on a device, too
-  return {1, w.last_dt, w.last_dt};
+  return fdem_shared::advance_world<HostRun>(w, stop);
 }
 
 }  // namespace breccia::fdem

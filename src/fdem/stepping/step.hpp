@@ -25,7 +25,7 @@ struct HostRun : fdem_shared::MovingRun<StepwiseRun, World> {
   /// and stay so, since a search reads how joints are damaged and may be due.
   void inner_joint_forces(World& w) const;
   void pair_forces(World& w) const;
-  void sum_forces(World& w) const;
+  void sum_forces(World& w);
 
   // Parts of pair_forces().
   void joint_forces(World& w) const;  ///< those that have not gone ahead

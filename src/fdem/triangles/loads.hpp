@@ -29,7 +29,7 @@ struct LoadedEdge {
   }
   Index number() const { return 3 * triangle + edge; }
   Index& element() { return triangle; }
-  Index element() const { return triangle; }
+  BR_HD Index element() const { return triangle; }
   BR_HD Vec2 pull() const { return {impedance_p, impedance_s}; }
 };
 

@@ -62,15 +62,20 @@ struct TriangleForces {
   template <class R>
   BR_HD void load_early(Index t, Loaded<R>& loaded) const {
     if constexpr (!is_single<R>) {
-      load_edges(t, loaded);
-      loaded.law = load_indices_now<R>(law, t);
-      loaded.viscosity = load_now<R>(viscosity, t);
-      load_couples(t, loaded);
       loaded.nodes.read(nodes, t);
-      loaded.inverse.read(shape_inverse, t);
+      load_own(t, loaded);
       loaded.nodes.wait();
-      loaded.inverse.wait();
     }
+  }
+  /// As that, but for the corners.
+  template <class R>
+  BR_HD void load_own(Index t, Loaded<R>& loaded) const {
+    load_edges(t, loaded);
+    loaded.law = load_indices_now<R>(law, t);
+    loaded.viscosity = load_now<R>(viscosity, t);
+    load_couples(t, loaded);
+    loaded.inverse.read(shape_inverse, t);
+    loaded.inverse.wait();
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
@@ -91,23 +96,64 @@ struct TriangleForces {
   template <class R>
   BR_HD void update(Index t, const Loaded<R>& loaded) const {
     if constexpr (is_single<R>) {
-      update_pack_in_single<R>(t);
-    } else if constexpr (in_single) {
-      Vec2Of<R> sum[1][3];
-      deform_in_single<Single>(t, {loaded.law.at}, {loaded.viscosity}, sum,
-                               [&loaded](Index, bool bedded) {
-                                 return strains_of<R>(loaded.nodes, loaded.inverse, bedded);
-                               });
-      add_all(t, loaded, sum[0]);
+      sum_parts<R>(t, [this](Index first, const auto& total) { write(first, total); });
     } else {
-      Vec2Of<R> sum[3];
-      deform(t, loaded, sum);
-      add_all(t, loaded, sum);
+      R total[6];
+      sum(t, loaded, total);
+      write(t, total);
     }
   }
   BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
 
+  /// The sums, which are not stored.
+  template <class R>
+  BR_HD void sum(Index t, const Loaded<R>& loaded, R (&total)[6]) const {
+    if constexpr (in_single) {
+      Vec2Of<R> own[1][3];
+      deform_in_single<Single>(t, {loaded.law.at}, {loaded.viscosity}, own,
+                               [&loaded](Index, bool bedded) {
+                                 return strains_of<R>(loaded.nodes, loaded.inverse, bedded);
+                               });
+      add_all(t, loaded, own[0], total);
+    } else {
+      Vec2Of<R> own[3];
+      deform(t, loaded, own);
+      add_all(t, loaded, own, total);
+    }
+  }
+  /// Those of a pack that is computed in single precision. Calls visit(first, total) for each part.
+  template <class S, class Visit>
+  void sum_parts(Index t, const Visit& visit) const {
+    using W = PartOf<S>;
+    constexpr Index count = PartsOf<S>::count, width = width_of<W>;
+    Index at[width_of<S>];
+    __builtin_memcpy(at, law.data + t, sizeof at);
+    W eta[count];
+    for (Index p = 0; p < count; ++p) eta[p] = load<W>(viscosity, t + p * width);
+    Vec2Of<W> own[count][3];
+    deform_in_single<S>(t, at, eta, own, [this, t](Index p, bool bedded) {
+      Columns<W, TriangleNodes> corners;
+      Columns<W, Mat2> inverse;
+      corners.read(nodes, t + p * width);
+      inverse.read(shape_inverse, t + p * width);
+      return strains_of<W>(corners, inverse, bedded);
+    });
+    for (Index p = 0; p < count; ++p) {
+      Loaded<W> loaded;
+      load_edges(t + p * width, loaded);
+      load_couples(t + p * width, loaded);
+      load_late(t + p * width, loaded);
+      W total[6];
+      add_all(t + p * width, loaded, own[p], total);
+      visit(t + p * width, total);
+    }
+  }
+
  private:
+  template <class R>
+  BR_HD void write(Index t, const R (&total)[6]) const {
+    Columns<R, Corners>::write(force, t, total);
+  }
   template <class R>
   BR_HD void load_edges(Index t, Loaded<R>& loaded) const {
     for (int k = 0; k < 3; ++k)
@@ -118,16 +164,17 @@ struct TriangleForces {
     loaded.couples = read_now(&couples.starts[t]);
     loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
   }
-  /// Adds forces of joints and couples to internal ones, and stores the sums.
+  /// Adds forces of joints and couples to internal ones.
   template <class R>
-  BR_HD void add_all(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3]) const {
+  BR_HD void add_all(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3], R (&total)[6]) const {
     for (int k = 0; k < 3; ++k)
       add_force(is_b<R>(loaded.edge[k]), loaded.joint[k], sum[k], sum[k == 2 ? 0 : k + 1]);
     if constexpr (width_of<R> == 1) add_couples(loaded.couples, loaded.couples_end, sum);
-    const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
-    Columns<R, Corners>::write(force, t, total);
-    if (width_of<R> != 1 && loaded.couples < loaded.couples_end)
-      for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
+    for (int k = 0; k < 3; ++k) {
+      total[2 * k] = sum[k].x;
+      total[2 * k + 1] = sum[k].y;
+    }
+    if (width_of<R> != 1 && loaded.couples < loaded.couples_end) add_couples(t, total);
   }
   /// Internal forces on the corners, and the work of viscosity.
   template <class R>
@@ -155,30 +202,6 @@ struct TriangleForces {
     const CornersOf<R> c(nodes.numbers);
     const R(&i)[4] = inverse.numbers;
     return strains(Mat2Of<R>{i[0], i[1], i[2], i[3]}, c.x, c.v, bedded);
-  }
-  template <class S>
-  void update_pack_in_single(Index t) const {
-    using W = PartOf<S>;
-    constexpr Index count = PartsOf<S>::count, width = width_of<W>;
-    Index at[width_of<S>];
-    __builtin_memcpy(at, law.data + t, sizeof at);
-    W eta[count];
-    for (Index p = 0; p < count; ++p) eta[p] = load<W>(viscosity, t + p * width);
-    Vec2Of<W> sum[count][3];
-    deform_in_single<S>(t, at, eta, sum, [this, t](Index p, bool bedded) {
-      Columns<W, TriangleNodes> corners;
-      Columns<W, Mat2> inverse;
-      corners.read(nodes, t + p * width);
-      inverse.read(shape_inverse, t + p * width);
-      return strains_of<W>(corners, inverse, bedded);
-    });
-    for (Index p = 0; p < count; ++p) {
-      Loaded<W> loaded;
-      load_edges(t + p * width, loaded);
-      load_couples(t + p * width, loaded);
-      load_late(t + p * width, loaded);
-      add_all(t + p * width, loaded, sum[p]);
-    }
   }
   /// As deform(), in single precision. @param at, viscosities  of each
   /// @param measure  measure(p, bedded): the strains of part p in double
@@ -243,12 +266,14 @@ struct TriangleForces {
     to.x += select(on_b, -f[0], f[2]);
     to.y += select(on_b, -f[1], f[3]);
   }
-  BR_HD void add_couples(Index t) const {
-    const Index first = couples.first(t), last = couples.last(t);
-    if (first == last) return;
-    Corners sum = force[t];
-    add_couples(first, last, sum.at);
-    force[t] = sum;
+  /// Those of triangles in a pack, one by one.
+  template <class R>
+  void add_couples(Index t, R (&total)[6]) const {
+    Corners own[width_of<R>];
+    store_records(View<Corners>{own, width_of<R>}, 0, total);
+    for (Index k = 0; k < width_of<R>; ++k)
+      add_couples(couples.first(t + k), couples.last(t + k), own[k].at);
+    gather_records(View<const Corners>{own, width_of<R>}, consecutive<R>(0), total);
   }
   BR_HD void add_couples(Index first, Index last, Vec2 (&sum)[3]) const {
     for (Index c = first; c < last; ++c) {

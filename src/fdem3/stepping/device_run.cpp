@@ -69,7 +69,7 @@ struct Launches {
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
-    with_element_kernel(w, [&](const auto& kernel) { visit(emptying(w, kernel)); });
+    fdem3::with_sums(w, [&](const auto& kernel) { visit(emptying(w, kernel)); });
   }
   static BundleForces bundles(World& w) { return bundle_kernel(w); }
 

@@ -30,12 +30,9 @@ void HostRun::pair_forces(World& w) const {
   for_each(w.exec, w.couples.size(), couple_kernel(w));
 }
 
-void HostRun::sum_forces(World& w) const {
+void HostRun::sum_forces(World& w) {
   const StageTime timed(w.exec, "element_forces");
-  with_element_kernel(w, [&w](const auto& kernel) {
-    fdem_shared::each_run(w, w.domain.runs,
-                          [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
-  });
+  sum_up(w);
 }
 
 }  // namespace breccia::fdem3

@@ -27,10 +27,7 @@ void run_packs(Lanes lanes, const BeddedForces& kernel, Index begin, Index end) 
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 bool run_packs(Lanes lanes, const MoveTetrahedra& kernel, Index begin, Index end) {
-  bool beyond = false;
-  run_whole_packs<fdem_shared::NotingPacks<PacksAvx512>, fdem_shared::NotingPacks<PacksAvx2>>(
-      lanes, fdem_shared::NotingMove{kernel, beyond}, begin, end);
-  return beyond;
+  return fdem_shared::move_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 
 }  // namespace breccia::fdem3

@@ -69,7 +69,7 @@ ElementForcesOf<bedded> element_kernel(World& w) {
 
 /// Calls visit(kernel) with the kernel of the sums of forces.
 template <class Visit>
-void with_element_kernel(World& w, const Visit& visit) {
+void with_sums(World& w, const Visit& visit) {
   if (w.given->bedded)
     visit(element_kernel<true>(w));
   else

@@ -4,6 +4,7 @@
 #include "fdem3/ranks.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem3/stepping/launches.hpp"
+#include "fdem_shared/advance.hpp"
 #include "fdem_shared/stepping.hpp"
 
 namespace breccia::fdem3 {
@@ -88,10 +89,7 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  if (!w.given->flow.on && w.given->bolts.empty() && !fdem_shared::turns_anything(w))
-    return advance_by_steps(w, stop);
-  step(w);  // places of cracks, bolts and axes are of the host in every step, on a device, too
-  return {1, w.last_dt, w.last_dt};
+  return fdem_shared::advance_world<HostRun>(w, stop);
 }
 
 }  // namespace breccia::fdem3

@@ -20,7 +20,7 @@ struct StepwiseRun : fdem_shared::StepwiseRun<World> {
 /// Loops on the host, shared by threads.
 struct HostRun : fdem_shared::MovingRun<StepwiseRun, World> {
   void pair_forces(World& w) const;
-  void sum_forces(World& w) const;
+  void sum_forces(World& w);
 };
 
 struct Launches;

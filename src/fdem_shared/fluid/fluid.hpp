@@ -23,6 +23,7 @@
 #include "fdem_shared/fluid/spreading.hpp"
 #include "fdem_shared/loaded_sides.hpp"
 #include "fdem_shared/sides_now.hpp"
+#include "fdem_shared/summed_apart.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -80,6 +81,7 @@ void list_here(World& w, std::vector<Side>& all, Buffer<Side>& sides, Buffer<Ind
                                 [](Side& side) -> Index& { return side.element(); });
   copy_to(sides, here.sides);
   copy_to(starts, here.starts);
+  forget_apart(w);
   w.amplitudes.clear();  // listed anew by the next launches
   w.clock.clear();
   w.graph.clear();

@@ -11,6 +11,7 @@
 #include "fdem_shared/setup/over_time.hpp"
 #include "fdem_shared/setup/writable.hpp"
 #include "fdem_shared/shape.hpp"
+#include "fdem_shared/summed_apart.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -252,6 +253,7 @@ void hold_anew(World& w, const Config& config) {
   for (const Index id : ids) own.push_back(hold[at(id)]);
   copy_to(e.hold, own);
   w.held_couples.known = false;
+  forget_apart(w);
 }
 
 }  // namespace breccia::fdem_shared

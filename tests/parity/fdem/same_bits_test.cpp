@@ -261,16 +261,16 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
   // one of these moments is bound to lie between a break and the search that follows
   for (const int moment : {120, 163, 201}) {
     const auto before = make_method(scene.config, scene.model, one);
-    for (int i = 0; i < moment; ++i) before->advance({});
+    for (int i = 0; i < moment; ++i) before->advance({1e300, before->steps() + 1});
     CheckpointWriter writer;
     before->save(writer);
     writer.write(folder / "state.br");
-    for (int i = moment; i < 250; ++i) before->advance({});
+    for (int i = moment; i < 250; ++i) before->advance({1e300, before->steps() + 1});
     const auto after = make_method(scene.config, scene.model, three);
     const CheckpointReader state(folder / "state.br");
     after->load(&state);
     EXPECT_EQ(after->steps(), moment);
-    for (int i = moment; i < 250; ++i) after->advance({});
+    for (int i = moment; i < 250; ++i) after->advance({1e300, after->steps() + 1});
     EXPECT_EQ(after->state_hash(), before->state_hash());
     EXPECT_EQ(after->energy().friction, before->energy().friction);
     EXPECT_EQ(after->energy().fracture, before->energy().fracture);
@@ -311,7 +311,7 @@ void expect_same_across_a_checkpoint(const char* precision) {
   Scene scene = impact();
   scene.config.precision = precision;
   const auto before = make_method(scene.config, scene.model, {});
-  for (int i = 0; i < 163; ++i) before->advance({});
+  for (int i = 0; i < 163; ++i) before->advance({1e300, before->steps() + 1});
   CheckpointWriter writer;
   before->save(writer);
   writer.write(folder / "state.br");
@@ -319,8 +319,8 @@ void expect_same_across_a_checkpoint(const char* precision) {
   const auto after = make_method(scene.config, scene.model, {});
   after->load(&state);
   for (int i = 163; i < 250; ++i) {
-    before->advance({});
-    after->advance({});
+    before->advance({1e300, before->steps() + 1});
+    after->advance({1e300, after->steps() + 1});
   }
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_EQ(after->energy().friction, before->energy().friction);
