@@ -3,7 +3,7 @@
 // once. Those of SummedApart have been summed up before and are moved by their force in memory.
 //
 // A step that another one follows at once leaves the sums to the move of that one
-// (MovingRun::sum_forces, ClockedRun::sum_forces); whoever reads Elements::force comes after a step
+// (MovingRun::sum_up, ClockedRun::sum_forces); whoever reads Elements::force comes after a step
 // that none follows.
 
 #include "fdem_shared/motion.hpp"

@@ -33,7 +33,8 @@ class CaseRules {
             const std::vector<std::string>& directions)
       : config_(config), directions_(directions) {
     if (config.precision == "single" && !std::is_same_v<Config, fdem::Config>)
-      add("precision: \"single\" is for links of spheres; allowed here are double, mixed");
+      add("precision: \"single\" is for links of spheres and for triangles; allowed here are "
+          "double, mixed");
     if (config.materials.empty()) add("material: at least one [material.<name>] is needed");
     add_too_many(config.supports.size(), "supports", problems);
     add_too_many(config.loads.size(), "loads", problems);

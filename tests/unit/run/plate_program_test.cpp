@@ -50,11 +50,33 @@ TEST_F(Program, RefusesConstantsThatLeaveNoTimeStep) {
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
-TEST_F(Program, RefusesToComputeTrianglesInSinglePrecision) {
+TEST_F(Program, ComputesTrianglesInSinglePrecision) {
   replace_file(path("plate.toml"), "precision = \"single\"\n" + torn_plate);
-  EXPECT_EQ(run("check " + path("plate.toml")), 2);
+  EXPECT_EQ(run("check " + path("plate.toml")), 0) << output();
+  EXPECT_EQ(run("run " + path("plate.toml") + " --steps 9 -o " + path("out")), 0) << output();
+}
+
+TEST_F(Program, RefusesToComputeTetrahedraInSinglePrecision) {
+  replace_file(path("box.toml"), R"(
+breccia = 1
+method = "fdem3d"
+precision = "single"
+time = { end = "20 us", max_step = "33 ns" }
+[material.rock]
+density = 2500
+young = "30 GPa"
+poisson = 0.2
+[[body]]
+name = "box"
+shape = "box"
+material = "rock"
+size = ["8 mm", "8 mm", "8 mm"]
+mesh_size = "4 mm"
+structured = true
+)");
+  EXPECT_EQ(run("check " + path("box.toml")), 2);
   EXPECT_NE(output().find("allowed here are double, mixed"), std::string::npos) << output();
-  EXPECT_EQ(run("run " + path("plate.toml") + " --steps 9 -o " + path("out")), 2);
+  EXPECT_EQ(run("run " + path("box.toml") + " --steps 9 -o " + path("out")), 2);
 }
 
 TEST_F(Program, NamesStepTimeAndBodyWhereNumbersGoWrong) {
