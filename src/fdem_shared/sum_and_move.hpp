@@ -1,6 +1,6 @@
 #pragma once
 // Sums of forces and moves at one go: forces of an element stay in registers, its corners are read
-// once. Those of SummedApart have been summed up before and are moved by their force in memory.
+// once. Elements of SummedApart are summed up before and moved by their force in memory.
 //
 // A step that another one follows at once leaves the sums to the move of that one
 // (MovingRun::sum_up, ClockedRun::sum_forces); whoever reads Elements::force comes after a step

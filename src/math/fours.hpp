@@ -69,7 +69,7 @@ inline void columns_of_floats(const View<const Record>& records,
 #endif
 
 /// Constants in single precision of a law, for each item: columns[k] is number k of record at[.].
-/// Those of neighbours are alike, nearly always.
+/// Laws of neighbours are alike, nearly always.
 template <int count, class Record, class R>
 BR_HD inline void gather_floats(const View<const Record>& records, const Index (&at)[width_of<R>],
                                 R (&columns)[count]) {

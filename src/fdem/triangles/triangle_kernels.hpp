@@ -121,7 +121,7 @@ struct TriangleForces {
       add_all(t, loaded, own, total);
     }
   }
-  /// Those of a pack that is computed in single precision. Calls visit(first, total) for each part.
+  /// Sums of a pack that is computed in single precision. Calls visit(first, total) for each part.
   template <class S, class Visit>
   void sum_parts(Index t, const Visit& visit) const {
     using W = PartOf<S>;
@@ -266,7 +266,7 @@ struct TriangleForces {
     to.x += select(on_b, -f[0], f[2]);
     to.y += select(on_b, -f[1], f[3]);
   }
-  /// Those of triangles in a pack, one by one.
+  /// Couples of triangles in a pack, one by one.
   template <class R>
   void add_couples(Index t, R (&total)[6]) const {
     Corners own[width_of<R>];
