@@ -141,15 +141,15 @@ struct CaseReader::State {
     if (range.holds(value)) return true;
     const auto typed = node.value_exact<std::string>();
     std::string text = key + " = " + (typed ? '"' + *typed + '"' : number_text(value)) +
-                       " is outside " + range_text(range) + unit;
-    if (!typed && unit == " rad") text += "; did you mean \"" + number_text(value) + " deg\"?";
+                       " is outside " + range_text(range) + (unit.empty() ? "" : " ") + unit;
+    if (!typed) text += meant_with_unit(number_text(value), unit, range);
     add(&node, text, meaning);
     return false;
   }
   bool number(const toml::node& node, const std::string& key, double& to, const char* unit,
               const Range& range, const char* meaning) {
     double given = 0.0;
-    const std::string after = *unit == '-' ? "" : fmt::format(" {}", unit);
+    const std::string after = *unit == '-' ? "" : unit;
     const Range allowed = given_range(range, unit, to);
     const bool good =
         quantity(node, key, unit, given) && in_range(node, key, given, to, allowed, meaning, after);

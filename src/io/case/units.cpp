@@ -364,6 +364,18 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
   return in_target;
 }
 
+std::string meant_with_unit(const std::string& number, std::string_view unit, const Range& range) {
+  constexpr std::string_view meant[][2] = {{"rad", "deg"}, {"Pa", "GPa"}, {"kg/m3", "g/cm3"}};
+  for (const auto& [of, usual] : meant) {
+    if (unit != of) continue;
+    const std::string text = number + " " + std::string(usual);
+    std::string problem;
+    if (range.holds(parse_quantity(text, std::string(of), problem)) && problem.empty())
+      return "; did you mean \"" + text + "\"?";
+  }
+  return "";
+}
+
 Range given_range(const Range& range, std::string_view unit, double usual) {
   constexpr double least = 1e-12, most = 1e9;
   if (unit != "m" || range.low < 0.0 || std::isinf(usual)) return range;

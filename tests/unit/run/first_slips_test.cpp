@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "io/case/units.hpp"
 #include "io/whole_file.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -49,6 +50,27 @@ TEST(FirstSlips, of_degrees_taken_for_radians_are_told) {
   EXPECT_NE(said.find("angle = 30 is outside [-6.3, 6.3] rad; did you mean \"30 deg\"?"),
             std::string::npos)
       << said;
+}
+
+TEST(FirstSlips, of_moduli_and_densities_without_their_units_are_told) {
+  const auto said_with = [](const char* key, const char* value) {
+    std::string text = plate;
+    const std::size_t at = text.find(std::string(key) + " = ");
+    text.replace(at, text.find('\n', at) - at, std::string(key) + " = " + value);
+    return said_of(text, "", "");
+  };
+  const std::string young = said_with("young", "83.1"), none = said_with("density", "0.0"),
+                    high = said_with("young", "1e16");
+  EXPECT_NE(young.find("young = 83.1 is outside [1000, 1e+15] Pa; did you mean \"83.1 GPa\"?"),
+            std::string::npos)
+      << young;
+  EXPECT_NE(none.find("density = 0 is outside"), std::string::npos) << none;
+  EXPECT_EQ(none.find("did you mean"), std::string::npos) << none;
+  EXPECT_EQ(high.find("did you mean"), std::string::npos) << high;
+  const Range of_spheres{10.0, 1e6};
+  EXPECT_EQ(meant_with_unit("2.4", "kg/m3", of_spheres), "; did you mean \"2.4 g/cm3\"?");
+  EXPECT_EQ(meant_with_unit("0.001", "kg/m3", of_spheres), "");
+  EXPECT_EQ(meant_with_unit("400", "rad", {-6.3, 6.3}), "");
 }
 
 TEST(FirstSlips, of_a_probe_that_reads_nothing_are_told_by_run) {
