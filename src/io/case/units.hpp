@@ -31,9 +31,9 @@ std::string describe_dimension(const Unit& unit);
 /// @param usual  the value without it; a key that is infinite without it has no bounds
 Range given_range(const Range& range, std::string_view unit, double usual);
 
-/// What a number without a unit that is out of its range may have been meant as, as the end of a
-/// line: '; did you mean "26 GPa"?' of a modulus, "30 deg" of an angle, "2.4 g/cm3" of a density.
-/// Empty if that is out of its range, too.
+/// A guess at a number without a unit that is out of its range, as the end of a line: '; did you
+/// mean "26 GPa"?' of a modulus, "30 deg" of an angle, "2.4 g/cm3" of a density. Empty if that is
+/// out of its range, too.
 /// @param number  as text  @param unit  its SI unit
 std::string meant_with_unit(const std::string& number, std::string_view unit, const Range& range);
 
