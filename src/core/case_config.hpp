@@ -19,10 +19,17 @@ struct TimeConfig {
   double end = 1e-3;          ///< simulated time at which the run is done  [s]
   double safety = 0.7;        ///< share of the critical time step that is used  [-]
   double max_step = 1e-3;     ///< never longer than this  [s]
-  int evaluate_every = 1;     ///< steps between evaluations of the critical step  [-]
+  int evaluate_every = 0;     ///< steps between evaluations of the critical step; 0: as usual  [-]
   double mass_scaling = 1.0;  ///< inertia in the run over that of the bodies; weight stays  [-]
   double added_mass = 0.0;    ///< share that the elements with the shortest steps may get  [-]
 
+  /// As a run has it.
+  /// @param usual  steps between evaluations where none are given
+  TimeConfig evaluated_every(int usual) const {
+    TimeConfig all = *this;
+    if (all.evaluate_every == 0) all.evaluate_every = usual;
+    return all;
+  }
   template <class Visit>
   void each_key(Visit&& key) {
     key("end", end, "s", positive, "simulated time at which the run is done");
@@ -30,8 +37,9 @@ struct TimeConfig {
     key("safety", safety, "-", Range{0.0, 1.0, Open::low},
         "share of the critical time step that is used; 0.7071 is the rule of Durand et al. 2012");
     key("max_step", max_step, "s", positive, "no time step is longer than this");
-    key("evaluate_every", evaluate_every, "-", Range{1, 1000},
-        "steps from one evaluation of the critical time step to the next");
+    key("evaluate_every", evaluate_every, "-", Range{0, 1000},
+        "steps from one evaluation of the critical time step to the next; 0: 20 for triangles and "
+        "tetrahedra, 10 for spheres that links join, 1 for loose ones");
     key("mass_scaling", mass_scaling, "-", Range{1.0, 1e12},
         "inertia is so many times that of the bodies, weight stays: the time step grows with its "
         "square root. For quasi-static runs alone: energy.kinetic_share in summary.json tells "

@@ -30,6 +30,7 @@ struct StepTime {
   double time;              ///< of the positions  [s]
   double last_dt, next_dt;  ///< the step that led there, the step to come  [s]
   std::int64_t step = 0;    ///< steps taken before, since the start of the case
+  bool evaluates = true;    ///< whether the critical step is found at the end of this one
 };
 
 /// Values of StepClock::open: the current step is not finalised; it began at the move / after the
@@ -47,6 +48,11 @@ struct StepClock {
   std::int32_t halted = 0;
   std::int32_t to_evaluation = 0;  ///< steps until one whose least number counts
   std::int32_t open = 0;           ///< step_open...: a step was taken and has not been counted yet
+
+  /// Time as the forces of the open step see it, once its move is made.
+  BR_HD StepTime after_move() const {
+    return {now.time + now.next_dt, now.next_dt, now.next_dt, now.step, to_evaluation == 0};
+  }
 };
 
 /// The bits of a number that is not negative: they are ordered like the numbers.

@@ -122,10 +122,8 @@ struct ClockedLaunch : LoadedBy<Kernel> {
       else
         return;
     }
-    const StepTime now =
-        phase == Phase::after_move
-            ? StepTime{c.now.time + c.now.next_dt, c.now.next_dt, c.now.next_dt, c.now.step}
-            : c.now;
+    StepTime now = phase == Phase::after_move ? c.after_move() : c.now;
+    now.evaluates = c.to_evaluation == 0;
     if constexpr (HasSlow<Kernel>) {
       bool done = false;
       if constexpr (requires { kernel.update_at(now, i, loaded...); })

@@ -60,18 +60,23 @@ struct GatherForces {
   View<const std::uint8_t> fixed;
   View<Vec3> force, torque;
   View<double> critical;  ///< inertia over a bound of the largest stiffness, in any axes  [s2]
+  bool evaluates;         ///< as StepTime: otherwise critical numbers stay as they are
 
-  BR_HD static void add(LinkSums& sums, const IncidenceView& incidence,
-                        const View<const PairForce>& actions, Index element) {
-    for (Index k = incidence.first(element); k < incidence.last(element); ++k) {
+  BR_HD void add_as_b(Index e, const PairForce& action) const {
+    sums[e].as_b.add(action.numbers + 3);
+    if (evaluates) sums[e].stiffness_b.add(action.stiffness);
+  }
+  BR_HD void add(const IncidenceView& incidence, const View<const PairForce>& actions,
+                 Index e) const {
+    for (Index k = incidence.first(e); k < incidence.last(e); ++k) {
       const Entry entry = incidence.entries[k];
       const PairForce& action = actions[pair_of(entry)];
-      if (side_of(entry) == 0) {
-        sums.as_a.add(action.numbers);
-        sums.stiffness_a.add(action.stiffness);
-      } else {
-        sums.add_as_b(action.numbers, action.stiffness);
+      if (side_of(entry) != 0) {
+        add_as_b(e, action);
+        continue;
       }
+      sums[e].as_a.add(action.numbers);
+      if (evaluates) sums[e].stiffness_a.add(action.stiffness);
     }
   }
 
@@ -81,14 +86,20 @@ struct GatherForces {
   BR_HD void at(Index e) const {
     add_all<R>(bars, bar_actions, e);
     add_all<R>(contacts, contact_actions, e);
-    finish(e, totals<R>(sums, fixed, e));
-    for (Index k = 0; k < width_of<R>; ++k) sums[e + k].clear();
+    finish(e, totals<R>(sums, e));
+    for (Index k = 0; k < width_of<R>; ++k) sums[e + k].as_a = sums[e + k].as_b = {};
+    if (!evaluates) return;
+    R straight, turning;
+    find_stiffest(sums, fixed, e, straight, turning);
+    const R slowest = max(straight / load<R>(mass, e), turning / load<R>(inertia, e));
+    store(critical, e, select(slowest > 0.0, 1.0 / slowest, constant<R>(largest_least)));
+    for (Index k = 0; k < width_of<R>; ++k) sums[e + k].clear_stiffness();
   }
   template <class R>
   BR_HD void add_all(const IncidenceView& incidence, const View<const PairForce>& actions,
                      Index e) const {
     if (incidence.first(e) == incidence.first(e + width_of<R>)) return;
-    for (Index k = 0; k < width_of<R>; ++k) add(sums[e + k], incidence, actions, e + k);
+    for (Index k = 0; k < width_of<R>; ++k) add(incidence, actions, e + k);
   }
 
   /// Stores the totals of an element, or a pack, from all its sums.
@@ -96,8 +107,6 @@ struct GatherForces {
   BR_HD void finish(Index e, const TotalsOf<R>& of) const {
     store_vectors(force, e, of.force);
     store_vectors(torque, e, of.torque);
-    const R slowest = max(of.straight / load<R>(mass, e), of.turning / load<R>(inertia, e));
-    store(critical, e, select(slowest > 0.0, 1.0 / slowest, constant<R>(largest_least)));
   }
 };
 

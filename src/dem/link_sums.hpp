@@ -25,10 +25,8 @@ struct LinkSums {
   StiffnessSums stiffness_a;
 
   /// Member by member: the whole at once becomes a slow loop.
-  BR_HD void clear() {
-    as_b = {};
+  BR_HD void clear_stiffness() {
     stiffness_b.straight = stiffness_b.turning = {};
-    as_a = {};
     stiffness_a.straight = stiffness_a.turning = {};
   }
   /// Adds what a pair does to its end b, as PairForce has it.
@@ -44,7 +42,6 @@ static_assert(sizeof(LinkSums) == 224);
 template <class R>
 struct TotalsOf {
   Vec3Of<R> force, torque;  ///<  [N], [N m]
-  R straight, turning;      ///< bounds of the largest stiffness of a free motion  [N/m], [N m]
 };
 
 /// A symmetric matrix by its components xx yy zz xy xz yz.
@@ -80,20 +77,21 @@ BR_HD inline bool is_held(int fixed, int first) {
   return (fixed >> first & 7) == 7;
 }
 
+/// Bounds of the largest stiffness of a free motion of element e.
 /// @param fixed  coordinates that are not free, bits of Fixed. Those of a kind count as free unless
 ///               all three are held: the bound then does not depend on the axes.
-BR_HD inline TotalsOf<double> totals_of(const LinkSums& s, int fixed) {
-  Symmetric<float> straight, turning;
-  for (int k = 0; k < 6; ++k) {
-    straight.c[k] = s.stiffness_a.straight[1 + k] + s.stiffness_b.straight[1 + k];
-    turning.c[k] = s.stiffness_a.turning[1 + k] + s.stiffness_b.turning[1 + k];
+/// @param straight, turning  get them  [N/m], [N m]
+BR_HD inline void find_stiffest(const View<LinkSums>& sums, const View<const std::uint8_t>& fixed,
+                                Index e, double& straight, double& turning) {
+  const LinkSums& s = sums[e];
+  Symmetric<float> k, theta;
+  for (int c = 0; c < 6; ++c) {
+    k.c[c] = s.stiffness_a.straight[1 + c] + s.stiffness_b.straight[1 + c];
+    theta.c[c] = s.stiffness_a.turning[1 + c] + s.stiffness_b.turning[1 + c];
   }
-  const Stiffest most =
-      stiffest(straight, turning, s.stiffness_a.straight[0] + s.stiffness_b.straight[7]);
-  return {{s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]},
-          {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]},
-          is_held(fixed, 0) ? 0.0 : static_cast<double>(most.straight),
-          is_held(fixed, 3) ? 0.0 : static_cast<double>(most.turning)};
+  const Stiffest most = stiffest(k, theta, s.stiffness_a.straight[0] + s.stiffness_b.straight[7]);
+  straight = is_held(fixed[e], 0) ? 0.0 : static_cast<double>(most.straight);
+  turning = is_held(fixed[e], 3) ? 0.0 : static_cast<double>(most.turning);
 }
 
 /// Vectors first, first + 1, ... of an array, written.
@@ -102,9 +100,10 @@ BR_HD inline void store_vectors(const View<Vec3>& vectors, Index first, const Ve
 }
 
 template <class R>
-BR_HD TotalsOf<R> totals(const View<LinkSums>& sums, const View<const std::uint8_t>& fixed,
-                         Index e) {
-  return totals_of(sums[e], fixed[e]);
+BR_HD TotalsOf<R> totals(const View<LinkSums>& sums, Index e) {
+  const LinkSums& s = sums[e];
+  return {{s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]},
+          {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]}};
 }
 
 #if !defined(__CUDACC__) && defined(__AVX2__)
@@ -147,10 +146,11 @@ inline void stiffest_of_four(const LinkSums* sums, double* straight, double* tur
   _mm256_storeu_pd(turning, _mm256_cvtps_pd(_mm_add_ps(rest, upper(spread))));
 }
 
-/// Bounds of element e and its neighbours in a pack.
+/// Of element e and its neighbours in a pack.
 template <class R>
-inline void stiffest_of_pack(const View<LinkSums>& sums, const View<const std::uint8_t>& fixed,
-                             Index e, R& straight, R& turning) {
+requires(width_of<R> > 1) inline void find_stiffest(const View<LinkSums>& sums,
+                                                    const View<const std::uint8_t>& fixed, Index e,
+                                                    R& straight, R& turning) {
   double numbers[2][width_of<R>];
   std::uint8_t held[width_of<R>], none[width_of<R>] = {};
   for (Index first = 0; first < width_of<R>; first += 4)
@@ -183,18 +183,12 @@ inline void store_vectors(const View<Vec3>& vectors, Index first, const Vec3Of<P
 }
 
 template <>
-inline TotalsOf<Pack8> totals<Pack8>(const View<LinkSums>& sums,
-                                     const View<const std::uint8_t>& fixed, Index e) {
+inline TotalsOf<Pack8> totals<Pack8>(const View<LinkSums>& sums, Index e) {
   Pack8 c[20];  // stiffnesses in between
   gather_records(View<const LinkSums>(sums), consecutive<Pack8>(e), c);
   const Pack8* const b = c;
   const Pack8* const a = c + 14;
-  TotalsOf<Pack8> t{{b[0] - a[3], b[1] - a[4], b[2] - a[5]},
-                    {b[3] + a[0], b[4] + a[1], b[5] + a[2]},
-                    Pack8{},
-                    Pack8{}};
-  stiffest_of_pack(sums, fixed, e, t.straight, t.turning);
-  return t;
+  return {{b[0] - a[3], b[1] - a[4], b[2] - a[5]}, {b[3] + a[0], b[4] + a[1], b[5] + a[2]}};
 }
 
 #elif !defined(__CUDACC__) && defined(__AVX2__)
@@ -204,18 +198,12 @@ inline void store_vectors(const View<Vec3>& vectors, Index first, const Vec3Of<P
 }
 
 template <>
-inline TotalsOf<Pack4> totals<Pack4>(const View<LinkSums>& sums,
-                                     const View<const std::uint8_t>& fixed, Index e) {
+inline TotalsOf<Pack4> totals<Pack4>(const View<LinkSums>& sums, Index e) {
   Pack4 c[20];  // stiffnesses in between
   gather_records(View<const LinkSums>(sums), consecutive<Pack4>(e), c);
   const Pack4* const b = c;
   const Pack4* const a = c + 14;
-  TotalsOf<Pack4> t{{b[0] - a[3], b[1] - a[4], b[2] - a[5]},
-                    {b[3] + a[0], b[4] + a[1], b[5] + a[2]},
-                    Pack4{},
-                    Pack4{}};
-  stiffest_of_pack(sums, fixed, e, t.straight, t.turning);
-  return t;
+  return {{b[0] - a[3], b[1] - a[4], b[2] - a[5]}, {b[3] + a[0], b[4] + a[1], b[5] + a[2]}};
 }
 
 #endif

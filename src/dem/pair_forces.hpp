@@ -28,27 +28,54 @@ using ActionsOf = Buffer<PairForceOf<Number>>;
 static_assert(sizeof(PairForce) == 112 && sizeof(PairForceOf<float>) == 72);
 
 #if defined(__CUDACC__)
-/// On a device: the lanes of a warp, whose items are neighbours, put their actions together and
-/// write them as one run of memory. Each on its own would write in steps of 112 or 72 bytes.
-/// @param actions  of the items of lane 0 and its neighbours
-template <class Number>
-__device__ inline void write_together(PairForceOf<Number>* actions,
-                                      const PairForceOf<Number>& own) {
-  using PairForce = PairForceOf<Number>;
-  using Piece = std::conditional_t<sizeof(PairForce) % sizeof(uint4) == 0, uint4, uint2>;
-  constexpr unsigned pieces = sizeof(PairForce) / sizeof(Piece);  // of each action
-  __shared__ Piece staged[block_size * pieces];
+/// Room of a block where its threads put their actions together.
+__device__ inline std::byte* staging() {
+  __shared__ uint4 room[block_size * sizeof(PairForce) / sizeof(uint4)];
+  return reinterpret_cast<std::byte*>(room);
+}
+/// On a device: the lanes of a warp, whose items are neighbours, put their rows together and write
+/// them as one run of memory. Each on its own would write in steps of a row.
+/// @tparam Piece  what is written at a time; its lanes' rows begin at a multiple of it
+/// @param rows  of the items of lane 0 and its neighbours
+template <class Piece, class Row>
+__device__ inline void write_together(Row* rows, const Row& own) {
+  constexpr unsigned pieces = sizeof(Row) / sizeof(Piece);
+  static_assert(sizeof(Row) % sizeof(Piece) == 0 && sizeof(Row) <= sizeof(PairForce));
   const unsigned lane = threadIdx.x % 32, active = __activemask();
-  Piece* const warp = staged + (threadIdx.x - lane) * pieces;
-  *reinterpret_cast<PairForce*>(warp + lane * pieces) = own;
+  auto* const warp = reinterpret_cast<Piece*>(staging() + (threadIdx.x - lane) * sizeof(PairForce));
+  *reinterpret_cast<Row*>(warp + lane * pieces) = own;
   __syncwarp(active);
-  auto* const to = reinterpret_cast<Piece*>(actions);
+  auto* const to = reinterpret_cast<Piece*>(rows);
   const unsigned stride = __popc(active);
   for (unsigned k = __popc(active & ((1U << lane) - 1)); k < 32 * pieces; k += stride)
     if ((active >> (k / pieces) & 1U) != 0) to[k] = warp[k];
   __syncwarp(active);
 }
+/// Divides what SplitActions keep of an action.
+template <class Number>
+using SplitPiece = std::conditional_t<sizeof(Number) == 8, int2, int>;
 #endif
+
+/// Actions of links in a device's launches: what each step adds up, and stiffnesses, which only
+/// steps that evaluate ask for, apart from each other.
+template <class Number>
+struct SplitActions {
+  struct Numbers {
+    Number of[9];
+  };
+  struct Stiffness {
+    float of[sizeof(PairForceOf<Number>::stiffness) / sizeof(float)];
+  };
+  Numbers* numbers;
+  Stiffness* stiffness;
+  Index size;
+
+  /// In the memory of whole actions.
+  explicit SplitActions(const View<PairForceOf<Number>>& actions)
+      : numbers(reinterpret_cast<Numbers*>(actions.data)),
+        stiffness(reinterpret_cast<Stiffness*>(numbers + actions.size)),
+        size(actions.size) {}
+};
 
 template <class Number>
 BR_HD inline void write_actions(const View<PairForceOf<Number>>& actions, Index at,
@@ -62,19 +89,60 @@ BR_HD inline void write_actions(const View<PairForceOf<Number>>& actions, Index 
   for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
 #if defined(__CUDA_ARCH__)
   if constexpr (sizeof action.stiffness > 9 * sizeof(float)) action.stiffness[9] = 0.0F;
-  write_together(actions.data + at - static_cast<Index>(threadIdx.x % 32), action);
+  using Piece = std::conditional_t<sizeof action % sizeof(int4) == 0, int4, int2>;
+  write_together<Piece>(actions.data + at - static_cast<Index>(threadIdx.x % 32), action);
 #endif
 }
 
+/// What a step that does not evaluate asks of an action: its stiffness stays as it is.
+template <class Number>
+BR_HD inline void write_numbers(const View<PairForceOf<Number>>& actions, Index at,
+                                const double (&numbers)[9]) {
+  for (int k = 0; k < 9; ++k) actions[at].numbers[k] = static_cast<Number>(numbers[k]);
+}
+
+template <class Number>
+BR_HD inline void write_numbers(const SplitActions<Number>& actions, Index at,
+                                const double (&numbers)[9]) {
+  typename SplitActions<Number>::Numbers own;
+  for (int k = 0; k < 9; ++k) own.of[k] = static_cast<Number>(numbers[k]);
+#if defined(__CUDA_ARCH__)
+  write_together<SplitPiece<Number>>(actions.numbers + at - static_cast<Index>(threadIdx.x % 32),
+                                     own);
+#else
+  actions.numbers[at] = own;
+#endif
+}
+template <class Number>
+BR_HD inline void write_actions(const SplitActions<Number>& actions, Index at,
+                                const double (&numbers)[9], const double (&stiffness)[9]) {
+  write_numbers(actions, at, numbers);
+  typename SplitActions<Number>::Stiffness own{};
+  for (int k = 0; k < 9; ++k) own.of[k] = static_cast<float>(stiffness[k]);
+#if defined(__CUDA_ARCH__)
+  write_together<SplitPiece<Number>>(actions.stiffness + at - static_cast<Index>(threadIdx.x % 32),
+                                     own);
+#else
+  actions.stiffness[at] = own;
+#endif
+}
+
+BR_HD inline void widen(const Single (&numbers)[9], double (&wide)[9]) {
+  for (int k = 0; k < 9; ++k) wide[k] = widened(numbers[k]);
+}
 template <class Actions>
 BR_HD inline void write_actions(const Actions& actions, Index at, const Single (&numbers)[9],
                                 const Single (&stiffness)[9]) {
   double wide[9], wide_stiffness[9];
-  for (int k = 0; k < 9; ++k) {
-    wide[k] = widened(numbers[k]);
-    wide_stiffness[k] = widened(stiffness[k]);
-  }
+  widen(numbers, wide);
+  widen(stiffness, wide_stiffness);
   write_actions(actions, at, wide, wide_stiffness);
+}
+template <class Actions>
+BR_HD inline void write_numbers(const Actions& actions, Index at, const Single (&numbers)[9]) {
+  double wide[9];
+  widen(numbers, wide);
+  write_numbers(actions, at, wide);
 }
 #if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
 inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
@@ -83,6 +151,11 @@ inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
   BR_ASSERT(at >= 0 && at + width_of<SinglePack> <= actions.size);
   write_rows<stride>(numbers, actions.data[at].numbers);
   write_rows<stride>(stiffness, actions.data[at].stiffness);
+}
+inline void write_numbers(const View<PairForceOf<float>>& actions, Index at,
+                          const SinglePack (&numbers)[9]) {
+  BR_ASSERT(at >= 0 && at + width_of<SinglePack> <= actions.size);
+  write_rows<sizeof(PairForceOf<float>) / sizeof(float)>(numbers, actions.data[at].numbers);
 }
 #endif
 
@@ -124,6 +197,19 @@ BR_HD inline void write_actions(const TileActionsOf<Number>& actions, Index at,
                                 const double (&numbers)[9], const double (&stiffness)[9]) {
   write_action(actions.records[at], numbers, stiffness);
 }
+template <class Number>
+BR_HD inline void write_numbers(const TileActionsOf<Number>& actions, Index at,
+                                const double (&numbers)[9]) {
+  Number* const to = actions.records[at].numbers;
+#if defined(__CUDA_ARCH__)
+  if constexpr (sizeof(Number) == 8) {  // two at a time
+    auto* const twos = reinterpret_cast<double2*>(to);
+    for (int k = 0; k < 4; ++k) twos[k] = make_double2(numbers[2 * k], numbers[2 * k + 1]);
+    to[8] = numbers[8];
+  } else
+#endif
+    for (int k = 0; k < 9; ++k) to[k] = static_cast<Number>(numbers[k]);
+}
 
 /// Adds to the energy that item i, or each of a pack, has spent so far.
 template <class Actions, class R>
@@ -163,29 +249,18 @@ struct SingleRows {
     to[8] = last[action];
   }
 };
-/// Writes the action of item k of a pack to place(k).
+/// Writes the numbers of item k of a pack to place(k).
 template <class Place>
-inline void write_actions_to(const Place& place, const Pack8 (&numbers)[9],
-                             const Pack8 (&stiffness)[9]) {
+inline void write_numbers_to(const Place& place, const Pack8 (&numbers)[9]) {
   Pack8 rows[8];
   for (int k = 0; k < 8; ++k) rows[k] = numbers[k];
   transpose(rows);
-  const SingleRows stiff(stiffness);
   alignas(64) double last[8];
   _mm512_store_pd(last, numbers[8]);
   for (int k = 0; k < 8; ++k) {
     PairForce& action = place(k);
     _mm512_storeu_pd(action.numbers, rows[k]);
     action.numbers[8] = last[k];
-    stiff.write(k, action.stiffness);
-  }
-}
-inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
-                          const Pack8 (&numbers)[9], const Pack8 (&stiffness)[9]) {
-  const SingleRows rows(numbers), stiff(stiffness);
-  for (int k = 0; k < 8; ++k) {
-    rows.write(k, actions.data[at + k].numbers);
-    stiff.write(k, actions.data[at + k].stiffness);
   }
 }
 #elif !defined(__CUDACC__) && defined(__AVX2__)
@@ -207,16 +282,14 @@ struct SingleRows {
     to[8] = last[action];
   }
 };
-/// Writes the action of item k of a pack to place(k).
+/// Writes the numbers of item k of a pack to place(k).
 template <class Place>
-inline void write_actions_to(const Place& place, const Pack4 (&numbers)[9],
-                             const Pack4 (&stiffness)[9]) {
+inline void write_numbers_to(const Place& place, const Pack4 (&numbers)[9]) {
   Pack4 rows[2][4];
   for (int part = 0; part < 2; ++part) {
     for (int k = 0; k < 4; ++k) rows[part][k] = numbers[4 * part + k];
     transpose(rows[part]);
   }
-  const SingleRows stiff(stiffness);
   alignas(32) double last[4];
   _mm256_store_pd(last, numbers[8]);
   for (int k = 0; k < 4; ++k) {
@@ -224,38 +297,67 @@ inline void write_actions_to(const Place& place, const Pack4 (&numbers)[9],
     _mm256_storeu_pd(action.numbers, rows[0][k]);
     _mm256_storeu_pd(action.numbers + 4, rows[1][k]);
     action.numbers[8] = last[k];
-    stiff.write(k, action.stiffness);
-  }
-}
-inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
-                          const Pack4 (&numbers)[9], const Pack4 (&stiffness)[9]) {
-  const SingleRows rows(numbers), stiff(stiffness);
-  for (int k = 0; k < 4; ++k) {
-    rows.write(k, actions.data[at + k].numbers);
-    stiff.write(k, actions.data[at + k].stiffness);
   }
 }
 #endif
 #if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
-template <class R>
-requires(width_of<R> > 1) inline void write_actions(const View<PairForce>& actions, Index at,
-                                                    const R (&numbers)[9],
-                                                    const R (&stiffness)[9]) {
+/// Writes the action of item k of a pack to place(k).
+template <class Place>
+inline void write_actions_to(const Place& place, const WidestPack (&numbers)[9],
+                             const WidestPack (&stiffness)[9]) {
+  write_numbers_to(place, numbers);
+  const SingleRows stiff(stiffness);
+  for (int k = 0; k < width_of<WidestPack>; ++k) stiff.write(k, place(k).stiffness);
+}
+inline void write_numbers(const View<PairForceOf<float>>& actions, Index at,
+                          const WidestPack (&numbers)[9]) {
+  const SingleRows rows(numbers);
+  for (int k = 0; k < width_of<WidestPack>; ++k) rows.write(k, actions.data[at + k].numbers);
+}
+inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
+                          const WidestPack (&numbers)[9], const WidestPack (&stiffness)[9]) {
+  write_numbers(actions, at, numbers);
+  const SingleRows stiff(stiffness);
+  for (int k = 0; k < width_of<WidestPack>; ++k) stiff.write(k, actions.data[at + k].stiffness);
+}
+inline void write_numbers(const View<PairForce>& actions, Index at,
+                          const WidestPack (&numbers)[9]) {
+  write_numbers_to([&](Index k) -> PairForce& { return actions.data[at + k]; }, numbers);
+}
+inline void write_actions(const View<PairForce>& actions, Index at, const WidestPack (&numbers)[9],
+                          const WidestPack (&stiffness)[9]) {
   write_actions_to([&](Index k) -> PairForce& { return actions.data[at + k]; }, numbers, stiffness);
 }
 #endif
 
-/// Books force f and moment M on b of interaction `at`, and of its neighbours in a pack, with
-/// tangent stiffnesses (Durand 2012, 4.4; docs/theory.md, time step).
+/// Numbers of the action of force f and moment M on b.
+template <class R>
+BR_HD void find_numbers(R (&numbers)[9], const PairMotion<R>& motion, const Vec3Of<R>& f,
+                        const Vec3Of<R>& moment) {
+  const Vec3Of<R> lever = cross(motion.normal, f);
+  const Vec3Of<R> on_a = -(motion.arm_a * lever) - moment;
+  const Vec3Of<R> on_b = moment - motion.arm_b * lever;
+  const R all[9] = {on_a.x, on_a.y, on_a.z, f.x, f.y, f.z, on_b.x, on_b.y, on_b.z};
+  for (int k = 0; k < 9; ++k) numbers[k] = all[k];
+}
+
+/// Books force f and moment M on b of interaction `at`, and of its neighbours in a pack, in a step
+/// that does not evaluate.
+template <class R, class Actions>
+BR_HD void write_push(const Actions& actions, Index at, const PairMotion<R>& motion,
+                      const Vec3Of<R>& f, const Vec3Of<R>& moment) {
+  R numbers[9];
+  find_numbers(numbers, motion, f, moment);
+  write_numbers(actions, at, numbers);
+}
+
+/// Likewise with tangent stiffnesses (Durand 2012, 4.4; docs/theory.md, time step).
 template <class R, class Actions>
 BR_HD void write_pair_force(const Actions& actions, Index at, const PairMotion<R>& motion,
                             const Vec3Of<R>& f, const Vec3Of<R>& moment, const R& normal,
                             const R& shear, const R& bending, const R& twist) {
-  const Vec3Of<R> lever = cross(motion.normal, f);
-  const Vec3Of<R> torque_a = -(motion.arm_a * lever) - moment;
-  const Vec3Of<R> torque_b = moment - motion.arm_b * lever;
-  const R numbers[9] = {torque_a.x, torque_a.y, torque_a.z, f.x,       f.y,
-                        f.z,        torque_b.x, torque_b.y, torque_b.z};
+  R numbers[9];
+  find_numbers(numbers, motion, f, moment);
 
   // K = shear I + stretch n n^T, K^theta = across I - (across - twist) n n^T, with the larger arm's
   // `across` for an end that has it: the ratio of the two matrices is the smaller end's.

@@ -146,10 +146,7 @@ struct BondConfig {
 
 /// A whole case.
 struct Config : CaseConfig {
-  Config() {
-    method = "dem3d+fdem3d";
-    time.evaluate_every = 20;
-  }
+  Config() { method = "dem3d+fdem3d"; }
 
   std::vector<std::string> methods{"dem3d", "fdem3d"};
   OverTime<Vec3> gravity{};  ///< [m/s2]

@@ -141,6 +141,7 @@ struct ConcreteLinkForces {
   Actions actions;
   Index first_action;  ///< action of link 0
   std::int64_t step;   ///< steps taken before
+  bool evaluates;      ///< as StepTime: otherwise stiffnesses of actions stay as they are
 
   template <class R>
   struct Loaded {
@@ -207,10 +208,11 @@ struct ConcreteLinkForces {
     if (any(r.yielded != 0.0)) book(actions, yielded, i, r.yielded);
     if (any(r.broke != 0.0)) book(actions, broke, i, r.broke);
 
+    const Vec3Of<R> force = r.shear - r.normal * motion.normal;
+    if (!evaluates) return write_push(actions, first_action + i, motion, force, r.moment);
     const R kn = r.active * link.stiffness, kt = by.shear_ratio * kn;
     const R kr = by.rolling_ratio * kt * link.radius * link.radius;
-    write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
-                     r.moment, kn, kt, kr, kr);
+    write_pair_force(actions, first_action + i, motion, force, r.moment, kn, kt, kr, kr);
   }
   /// State of a link.
   BR_HD LinkState<double> state_of(Index i) const {
@@ -222,6 +224,7 @@ struct ConcreteLinkForces {
   BR_HD void set(const StepTime& now) {
     dt = now.last_dt;
     step = now.step;
+    evaluates = now.evaluates;
   }
   BR_WHOLE BR_HD void operator()(Index i) const { run_at<Item>(*this, i); }
 
@@ -242,6 +245,7 @@ struct ConcreteLinkForces {
     }
     R nothing[9];
     for (R& number : nothing) number = zero;
+    if (!evaluates) return write_numbers(actions, first_action + i, nothing);
     write_actions(actions, first_action + i, nothing, nothing);
   }
   template <class R>
@@ -259,9 +263,10 @@ struct ConcreteLinkForces {
   }
 };
 
-template <class Number>
-ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, const LinkSpace& in,
-                                     ActionsOf<StoredAs<Number>>& actions) {
+/// @param actions  where they go
+template <class Number, class Actions>
+ConcreteLinkForces<Number, Actions> forces_of(ConcreteLinks& c, const ConcreteLink& law,
+                                              const LinkSpace& in, const Actions& actions) {
   LinkHistory<StoredAs<Number>>& kept = c.kept.as<Number>();
   return {law.as<ConstantOf<ComputedIn<Number>>>(),
           in.dt,
@@ -281,9 +286,10 @@ ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, 
           c.branch_normal.view(),
           c.branch_shear.view(),
           c.damped_away.view(),
-          actions.view(),
+          actions,
           0,
-          in.step};
+          in.step,
+          in.evaluates};
 }
 
 /// Parts of the law that some of the links have.

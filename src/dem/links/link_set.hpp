@@ -118,6 +118,7 @@ struct LinkSpace {
   ElementsView elements;
   double dt;          ///< the step that moved the elements to where they are  [s]
   std::int64_t step;  ///< steps taken before
+  bool evaluates;     ///< as StepTime
 };
 
 /// Energies of one group of links.

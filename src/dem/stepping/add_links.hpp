@@ -27,32 +27,14 @@ struct AddLinks {
   View<LinkSums> sums;
   Index first_private, end;  ///< elements that get sums at once
   Index reach;               ///< no link leads further
+  bool evaluates;            ///< as StepTime: otherwise stiffnesses are left out
   std::vector<DeferredForce>& deferred;
 
   /// Links [from, to); action 0 is of link `from`.
   template <class Number>
   void operator()(const ConcreteLinkForces<Number>& links, Index from, Index to,
                   const PairForceOf<StoredAs<Number>>* actions) const {
-    for (Index i = from; i < to;) {
-      const Index a = links.a[i];
-      SixSums as_a = sums[a].as_a;
-      StiffnessSums stiffness_a = sums[a].stiffness_a;
-      fetch(std::min(a + reach, sums.size - 1), links.elements.state);
-      for (; i < to && links.a[i] == a; ++i) {
-        const PairForceOf<StoredAs<Number>>& action = actions[i - from];
-        as_a.add(action.numbers);
-        stiffness_a.add(action.stiffness);
-        const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
-        __builtin_prefetch(&sums[soon].as_b, 1);
-        __builtin_prefetch(&sums[soon].stiffness_b, 1);
-        if (b >= first_private && b < end)
-          sums[b].add_as_b(action.numbers, action.stiffness);
-        else
-          defer(*this, action, b);
-      }
-      sums[a].as_a = as_a;
-      sums[a].stiffness_a = stiffness_a;
-    }
+    evaluates ? add<true>(links, from, to, actions) : add<false>(links, from, to, actions);
   }
   /// Adds the forces of the edges of facets [from, to); action 0 is of facet 0.
   void operator()(const LdpmEdgeForces& edges, Index from, Index to,
@@ -65,10 +47,10 @@ struct AddLinks {
         const PairForce& action = actions[edges.leads[k]];
         const Index b = edges.b[edges.leads[k]];
         as_a.add(action.numbers);
-        stiffness_a.add(action.stiffness);
+        if (evaluates) stiffness_a.add(action.stiffness);
         if (b >= first_private && b < end) {
           sums[b].as_b.add(action.numbers + 3);
-          sums[b].stiffness_b.straight.add(action.stiffness);
+          if (evaluates) sums[b].stiffness_b.straight.add(action.stiffness);
         } else {
           defer(*this, action, b);
         }
@@ -83,6 +65,33 @@ struct AddLinks {
     const auto* record = reinterpret_cast<const char*>(state.data + element);
     for (int line = 0; line < 4; ++line) __builtin_prefetch(sum + 64 * line, 1);
     for (int line = 0; line < 2; ++line) __builtin_prefetch(record + 64 * line);
+  }
+
+ private:
+  template <bool with_stiffness, class Links, class Action>
+  void add(const Links& links, Index from, Index to, const Action* actions) const {
+    for (Index i = from; i < to;) {
+      const Index a = links.a[i];
+      SixSums as_a = sums[a].as_a;
+      StiffnessSums stiffness_a = sums[a].stiffness_a;
+      fetch(std::min(a + reach, sums.size - 1), links.elements.state);
+      for (; i < to && links.a[i] == a; ++i) {
+        const Action& action = actions[i - from];
+        as_a.add(action.numbers);
+        if (with_stiffness) stiffness_a.add(action.stiffness);
+        const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
+        __builtin_prefetch(&sums[soon].as_b, 1);
+        if (with_stiffness) __builtin_prefetch(&sums[soon].stiffness_b, 1);
+        if (b < first_private || b >= end)
+          defer(*this, action, b);
+        else if (with_stiffness)
+          sums[b].add_as_b(action.numbers, action.stiffness);
+        else
+          sums[b].as_b.add(action.numbers + 3);
+      }
+      sums[a].as_a = as_a;
+      if (with_stiffness) sums[a].stiffness_a = stiffness_a;
+    }
   }
 };
 

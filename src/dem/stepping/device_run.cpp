@@ -130,9 +130,11 @@ class LaunchedForces {
   }
   template <class Number, ConcreteParts parts>
   void pair_forces(World& w) const {
+    const auto grouped = [&](const auto& kernel, const auto& groups) {
+      return by_(Grouped<std::decay_t<decltype(kernel)>, parts>(kernel, groups));
+    };
     const auto of = [&](auto& set, Index first_action) {
-      const auto kernel = link_kernel<Number>(w, set, {}, first_action);
-      return by_(Grouped<std::remove_cv_t<decltype(kernel)>, parts>(kernel, set.on_device));
+      return grouped(link_kernel<Number>(w, set, {}, first_action), set.on_device);
     };
     const Index before_parallel = w.steel.size() + w.interface.size();
     for_each_part(
@@ -142,7 +144,9 @@ class LaunchedForces {
                   part(w.parallel.size(), of(w.parallel, before_parallel),
                        part(w.ldpm.size(), of(w.ldpm, before_parallel + w.parallel.size()),
                             part(w.contacts.size(), by_(contact_kernel(w)),
-                                 part(w.concrete.size(), of(w.concrete, 0), Parts<>{})))))));
+                                 part(w.concrete.size(),
+                                      grouped(split_link_kernel<Number>(w), w.concrete.on_device),
+                                      Parts<>{})))))));
   }
   By by_;
   StepClock* clock_;

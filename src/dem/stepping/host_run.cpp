@@ -147,8 +147,9 @@ void link_forces_and_sums(World& w) {
 #pragma omp for schedule(static, 1)
     for (int t = 0; t < threads; ++t) {
       const auto run = static_cast<std::size_t>(t);
-      AddLinks add{gather.sums, link_plan.first_private[run], link_plan.begin[run + 1],
-                   link_plan.reach, link_plan.deferred[run]};
+      AddLinks add{
+          gather.sums,      link_plan.first_private[run], link_plan.begin[run + 1], link_plan.reach,
+          gather.evaluates, link_plan.deferred[run]};
       add.deferred.clear();
       const auto ahead = std::make_unique_for_overwrite<Ahead<Number>[]>(kernels.size());
       auto tile =
@@ -180,8 +181,7 @@ void link_forces_and_sums(World& w) {
       if (begin == end) continue;
       for (std::size_t before = 0; before <= run; ++before)
         for (const DeferredForce& p : link_plan.deferred[before])
-          if (p.b >= begin && p.b < end)
-            gather.sums[p.b].add_as_b(p.action.numbers, p.action.stiffness);
+          if (p.b >= begin && p.b < end) gather.add_as_b(p.b, p.action);
       run_packs(w.lanes, gather, begin, end);
     }
   }

@@ -29,18 +29,39 @@ inline bool sums_note_least(const World& w) {
   return !w.domain.single_rank() && w.walls.empty() && !w.clock.empty() && w.elements.size() > 0;
 }
 
+/// Actions of links of a device's launches.
+template <class Number>
+auto split_actions(World& w) {
+  using Stored = StoredAs<Number>;
+  return SplitActions<Stored>(w.link_actions.as<Stored>().view());
+}
+
+/// Whether the step that is being taken ends with an evaluation of the critical step.
+inline bool evaluates_now(const World& w) {
+  return w.step % w.given->time.evaluate_every == 0;
+}
+inline LinkSpace link_space(const World& w) {
+  return {elements_view(w), w.last_dt, w.step, evaluates_now(w)};
+}
+
 /// Forces of links by a law, with the arrays of all links of its kind.
 /// @param first_action  action of link 0 among those of `bar_actions`; 0 for swept links
 template <class Number, class Law>
 auto link_kernel(World& w, LinkSet<Law>& set, const Law& law, Index first_action) {
-  const LinkSpace space{elements_view(w), w.last_dt, w.step};
+  const LinkSpace space = link_space(w);
   if constexpr (LinkSet<Law>::swept) {
-    return forces_of<Number>(set, law, space, w.link_actions.as<Number>());
+    return forces_of<Number>(set, law, space, w.link_actions.as<Number>().view());
   } else {
     auto kernel = forces_of<Number>(set, law, space, w.bar_actions);
     if constexpr (requires { kernel.first_action; }) kernel.first_action = first_action;
     return kernel;
   }
+}
+
+/// Forces of swept links for a device's launches.
+template <class Number>
+auto split_link_kernel(World& w) {
+  return forces_of<Number>(w.concrete, ConcreteLink{}, link_space(w), split_actions<Number>(w));
 }
 
 /// Forces of the edges of facets, with the arrays of all of them.
@@ -83,12 +104,12 @@ inline GatherForces gather_kernel(World& w) {
   return {w.link_sums.view(),   w.bar_incidence.view(),   w.contact_incidence.view(),
           w.bar_actions.view(), w.contact_actions.view(), e.mass.view(),
           e.inertia.view(),     e.fixed.view(),           e.force.view(),
-          e.torque.view(),      w.critical.view()};
+          e.torque.view(),      w.critical.view(),        evaluates_now(w)};
 }
 
 template <class Number>
 GatherWide<Number> gather_wide_kernel(World& w) {
-  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.as<Number>().view(),
+  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), split_actions<Number>(w),
           w.domain.owned_view()};
 }
 

@@ -180,7 +180,6 @@ TileCase<Number> case_of(World& w, TilePlan& plan, const StopAt& stop) {
           move_kernel(w),
           w.elements.force.view(),
           w.elements.torque.view(),
-          w.critical.view(),
           std::as_const(w.concrete.on_device.as<Law>()).view(),
           std::as_const(w.steel.on_device.laws).view(),
           std::as_const(w.interface.on_device.laws).view(),

@@ -110,7 +110,6 @@ struct TileCase {
   ContactForces contacts, twins;  ///< of elements that are a; as those that are b follow them
   MoveElements move;
   View<Vec3> force, torque;
-  View<double> critical;
   View<const Law> concrete_laws;
   View<const SteelLink> steel_laws;
   View<const InterfaceLink> interface_laws;

@@ -70,10 +70,8 @@ struct TileContent {
       if (is_own(memory.interface[l]))
         all.interface.state[static_cast<Index>(memory.interface[l].number)] = memory.bond_state[l];
   }
-  /// Critical numbers and actions of bars and contacts outlast a step: those of the last one.
+  /// Actions of bars and contacts outlast a step: those of the last one.
   BR_HD void leave_actions(Index thread, Index threads) const {
-    for (Index e = thread; e < tile.own; e += threads)
-      all.critical[memory.place[e]] = critical_of(memory.slowest[e]);
     for (Index k = thread; k < tile.contacts; k += threads) {
       const TileContact contact = memory.contacts[k];
       PairForce& to = (contact.side == 0 ? all.contacts : all.twins).actions.data[contact.pair];

@@ -124,7 +124,6 @@ struct TileMemory {
   Placed<Quaternion> orientation;
   Placed<Vec3> reference;
   Placed<double> margin, damping_work, load_work;
-  Placed<double> slowest;   ///< largest stiffness over inertia in this step  [1/s2]
   Placed<float> over_mass;  ///<  [1/kg]
   Placed<float> room;       ///< square of the margin, less what rounding may take  [m2]
 
@@ -220,7 +219,6 @@ BR_HD std::size_t TileMemory<Number>::lay_out(const Tile& of, const TileGroups& 
   pieces.take(margin, own);
   pieces.take(damping_work, own);
   pieces.take(load_work, own);
-  pieces.take(slowest, own);
   pieces.take(over_mass, own);
   pieces.take(room, own);
   pieces.take(concrete, tile.concrete);

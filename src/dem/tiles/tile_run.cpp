@@ -26,10 +26,6 @@ BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileReport& report, St
   return clock.halted != 0;
 }
 
-/// Time as the forces of a step see it, after its move.
-BR_HD StepTime after_move(const StepTime& now) {
-  return {now.time + now.next_dt, now.next_dt, now.next_dt, now.step};
-}
 /// Models with rates have no tiles.
 constexpr ConcreteParts concrete_with_tiles = concrete_all & ~concrete_rated;
 /// The longest step that may follow one: StepRule lets it grow by a twentieth.
@@ -101,6 +97,14 @@ __device__ void pair_forces(const TileStep<Number>& tile, const StepTime& now, I
     if (lane == 0) number = tile.take_number(tile.memory.counters);
     number = __shfl_sync(~0U, number, 0);
   }
+}
+
+/// @tparam evaluates  whether stiffnesses are added up, too
+template <int threads, bool evaluates, class Number>
+__device__ void sums(const TileStep<Number>& tile, std::uint32_t tag, double dt, Index thread,
+                     TileReport& report) {
+  for (Index i = thread; i < tile.sum_items(); i += threads)
+    tile.template sum<evaluates>(i, tag, span_after(dt), longest_after(dt), report);
 }
 
 /// Tells all tiles by `threads` threads what this one has found, and hears of all.
@@ -252,12 +256,14 @@ __global__ void __launch_bounds__(threads, 1)
       }
       if (moved) __syncthreads();
       moved = false;
-      pair_forces<threads, parts>(tile, after_move(tile.memory.clocks[current].now), thread);
+      pair_forces<threads, parts>(tile, tile.memory.clocks[current].after_move(), thread);
       __syncthreads();
       const double dt = tile.memory.clocks[current].now.next_dt;
       TileReport report;
-      for (Index i = thread; i < tile.sum_items(); i += threads)
-        tile.sum(i, tag + 1, span_after(dt), longest_after(dt), report);
+      if (tile.memory.clocks[current].to_evaluation == 0)
+        sums<threads, true>(tile, tag + 1, dt, thread, report);
+      else
+        sums<threads, false>(tile, tag + 1, dt, thread, report);
       tell(report, told, thread);
       __syncthreads();
     }
@@ -298,10 +304,10 @@ class TilesInTurn {
         clock.host_request = 1;
         break;
       }
-      const StepTime now = after_move(clock.now);
+      const StepTime now = clock.after_move();
       for (std::size_t t = 0; t < tiles_.size(); ++t) {
         pair_forces(tiles_[t], now);
-        told[t] = sums(tiles_[t], tag_ + 1, now.last_dt);
+        told[t] = sums(tiles_[t], tag_ + 1, now);
       }
       evaluated_ = true;
     }
@@ -364,20 +370,22 @@ class TilesInTurn {
   struct Sums {
     const Step* tile;
     std::uint32_t tag;
-    double dt;
+    StepTime now;
     Index first;
     TileReport report;
+
+    void add(int lane) {
+      const float span = span_after(now.last_dt), longest = longest_after(now.last_dt);
+      if (now.evaluates)
+        tile->template sum<true>(first + lane, tag, span, longest, report);
+      else
+        tile->template sum<false>(first + lane, tag, span, longest, report);
+    }
   };
-  static TileReport sums(const Step& tile, std::uint32_t tag, double dt) {
-    Sums sums{&tile, tag, dt, 0, {}};
+  static TileReport sums(const Step& tile, std::uint32_t tag, const StepTime& now) {
+    Sums sums{&tile, tag, now, 0, {}};
     for (; sums.first < tile.sum_items(); sums.first += lockstep::lanes)
-      lockstep::run(
-          [](void* context, int lane) {
-            auto* const of = static_cast<Sums*>(context);
-            of->tile->sum(of->first + lane, of->tag, span_after(of->dt), longest_after(of->dt),
-                          of->report);
-          },
-          &sums);
+      lockstep::run([](void* context, int lane) { static_cast<Sums*>(context)->add(lane); }, &sums);
     return sums.report;
   }
   /// Every tile hears the same.

@@ -6,6 +6,7 @@
 // contacts of its own elements, and adds these up. Links across tiles are evaluated by both. Once a
 // step tiles tell each other the forces on their elements and their least critical number.
 
+#include "dem/tiles/part_sum.hpp"
 #include "dem/tiles/tile_content.hpp"
 #include "exec/lockstep.hpp"
 
@@ -124,6 +125,8 @@ struct TileStep : TileContent<Number> {
   /// @param span, longest  half of this step and the longest to come; that one  [s]
   /// @param report  hears of the element's critical number, and whether its margin may be used up
   ///                by the move to come
+  /// @tparam evaluates  as StepTime; otherwise stiffnesses are left out
+  template <bool evaluates>
   BR_HD void sum(Index i, std::uint32_t tag, float span, float longest, TileReport& report) const {
     const bool is_item = i < tile.own * width;  // otherwise the last element again, nothing told
     const Index e = memory.rows[is_item ? i / width : tile.own - 1];
@@ -132,12 +135,13 @@ struct TileStep : TileContent<Number> {
     const Reach unforced = reach_without_force(e, axis);
     const float room = memory.room[e];
     const Index place = memory.place[e];
-    PartSum as_a{}, as_b{};
+    PartSum<evaluates> as_a{}, as_b{};
     add_links(as_a, as_b, e, axis, part);
     add_contacts(as_a, as_b, e, axis, part);
     const double force = as_b.first - as_a.second, torque = as_b.second + as_a.first;
     const SumGroup group;
-    const double slowest = slowest_of(group, e, part, as_a, as_b);
+    double slowest = 0.0;
+    if constexpr (evaluates) slowest = slowest_of(group, e, part, as_a, as_b);
     const float reach = unforced.with(force, all.move.kick.damping, span, longest),
                 square = reach * reach;
     const float of_y = group.from(1, square), of_z = group.from(2, square);
@@ -150,7 +154,6 @@ struct TileStep : TileContent<Number> {
       put(words + 3 + axis, ordered_bits(torque), tag);
     }
     if (part != 0) return;
-    memory.slowest[e] = slowest;
     report.slowest = slowest > report.slowest ? slowest : report.slowest;  // NaN does not count
     report.near = report.near || !(square + of_y + of_z < room);
   }
@@ -241,7 +244,8 @@ struct TileStep : TileContent<Number> {
                         all.concrete.damped_away,
                         actions(memory.actions.data(), link),
                         0,
-                        now.step};
+                        now.step,
+                        now.evaluates};
     typename Kernel::template Loaded<Item> loaded;
     loaded.length = memory.length[l];
     loaded.stiffness = Item(constants.stiffness);
@@ -324,38 +328,13 @@ struct TileStep : TileContent<Number> {
     memory.touching[k] = world.state[contact.pair].overlap > 0.0 ? 1 : 0;
   }
 
-  /// Sums of one of an element's threads, of the actions on it as one of two ends.
-  struct PartSum {
-    double first, second;  ///< torque on a, force on b; or force on b, torque on b
-    float straight[2], turning[2];
-    BR_HD void add(const PartSum& other) {
-      first += other.first;
-      second += other.second;
-      for (int k = 0; k < 2; ++k) {
-        straight[k] += other.straight[k];
-        turning[k] += other.turning[k];
-      }
-    }
-  };
-  template <class Stored>
-  BR_HD static PartSum read(const PairForceOf<Stored>& action, int first, int part) {
-    // Both at a time, where they lie so.
-    struct alignas(sizeof(Stored) == 8 ? 8 : 4) Two {
-      float first, second;
-    };
-    const Two two = reinterpret_cast<const Two*>(action.stiffness)[part];
-    const float ratio = action.stiffness[8];
-    return {action.numbers[first],
-            action.numbers[first + 3],
-            {two.first, two.second},
-            {ratio * two.first, ratio * two.second}};
-  }
   /// @param action  an entry of a row
-  BR_HD PartSum read(TilePlace action, int first, int part) const {
+  template <bool evaluates>
+  BR_HD PartSum<evaluates> read(TilePlace action, int first, int part) const {
     const auto bars = static_cast<TilePlace>(tile.bars());
     if (sizeof(Stores) != sizeof(double) && action > bars)
-      return read(memory.actions[action - bars - 1], first, part);
-    return read(memory.bar_actions[action], first, part);
+      return part_of<evaluates>(memory.actions[action - bars - 1], first, part);
+    return part_of<evaluates>(memory.bar_actions[action], first, part);
   }
   /// Without a division of zero, for which a GPU takes a slow way.
   BR_HD static double over(float stiffness, double inertia) {
@@ -363,7 +342,9 @@ struct TileStep : TileContent<Number> {
   }
   /// The links of both rows of an element, which are of one even length: zeros fill them up. No sum
   /// is -0, so that these leave it as it is.
-  BR_HD void add_links(PartSum& as_a, PartSum& as_b, Index e, int axis, int part) const {
+  template <bool evaluates>
+  BR_HD void add_links(PartSum<evaluates>& as_a, PartSum<evaluates>& as_b, Index e, int axis,
+                       int part) const {
     struct alignas(2 * sizeof(TilePlace)) Two {
       TilePlace first, second;
     };
@@ -373,34 +354,38 @@ struct TileStep : TileContent<Number> {
     const Two *const end = a + length, *b = end;
     for (; a < end; ++a, ++b) {
       const Two in_a = *a, in_b = *b;
-      const PartSum of_a = read(in_a.first, axis, part), of_b = read(in_b.first, axis + 3, part),
-                    next_a = read(in_a.second, axis, part),
-                    next_b = read(in_b.second, axis + 3, part);
+      const auto of_a = read<evaluates>(in_a.first, axis, part),
+                 of_b = read<evaluates>(in_b.first, axis + 3, part),
+                 next_a = read<evaluates>(in_a.second, axis, part),
+                 next_b = read<evaluates>(in_b.second, axis + 3, part);
       as_a.add(of_a);
       as_b.add(of_b);
       as_a.add(next_a);
       as_b.add(next_b);
     }
   }
-  BR_HD void add_contacts(PartSum& as_a, PartSum& as_b, Index e, int axis, int part) const {
+  template <bool evaluates>
+  BR_HD void add_contacts(PartSum<evaluates>& as_a, PartSum<evaluates>& as_b, Index e, int axis,
+                          int part) const {
     for (Index k = memory.starts[e]; k < memory.starts[e + 1]; ++k) {
       if (memory.acts[k] == 0) continue;
       const PairForce& action = *this->action_of(k);
       if (memory.contacts[k].side == 0)
-        as_a.add(read(action, axis, part));
+        as_a.add(part_of<evaluates>(action, axis, part));
       else
-        as_b.add(read(action, axis + 3, part));
+        as_b.add(part_of<evaluates>(action, axis + 3, part));
     }
   }
   /// The largest stiffness over inertia of an element, by all of its threads.  [1/s2]
-  BR_HD double slowest_of(const SumGroup& group, Index e, int part, const PartSum& as_a,
-                          const PartSum& as_b) const {
+  BR_HD double slowest_of(const SumGroup& group, Index e, int part, const PartSum<true>& as_a,
+                          const PartSum<true>& as_b) const {
     const int fixed = memory.fixed[e];
     const double mass = memory.mass[e], inertia = memory.inertia[e];
     Symmetric<float> straight, turning;  // numbers 1 to 6 of the eight that threads have by twos
     BR_UNROLL
     for (int k = 0; k < 2; ++k) {
-      const float s = as_a.straight[k] + as_b.straight[k], t = as_a.turning[k] + as_b.turning[k];
+      const float s = as_a.stiffness.straight[k] + as_b.stiffness.straight[k],
+                  t = as_a.stiffness.turning[k] + as_b.stiffness.turning[k];
       BR_UNROLL
       for (int from = 0; from < width; ++from) {
         const int component = 2 * from + k - 1;
@@ -409,7 +394,8 @@ struct TileStep : TileContent<Number> {
         turning.c[component] = group.from(from, t);
       }
     }
-    const float turn = group.from(0, as_a.straight[0]) + group.from(3, as_b.straight[1]);
+    const float turn =
+        group.from(0, as_a.stiffness.straight[0]) + group.from(3, as_b.stiffness.straight[1]);
     const bool turns = part % 2 != 0;  // which of stiffest()'s numbers a thread finds
     Symmetric<float> c;
     BR_UNROLL

@@ -295,11 +295,6 @@ struct JointsConfig {
 
 /// A whole FDEM case.
 struct Config : CaseConfig {
-  /// The bound on the step walks all triangles and their joints: in every step it would cost more
-  /// than the forces. Triangles that could meet until the next evaluation count as met
-  /// (StableStep).
-  Config() { time.evaluate_every = 20; }
-
   std::string plane = "stress";
   OverTime<Vec2> gravity{};    ///<  [m/s2]
   double gravity_begin = 0.0;  ///< no key: where the time of its table begins  [s]

@@ -234,7 +234,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   if (model.size() == 0) throw InputError("the model holds no triangles");
   World w(exec);
   Case& given = set_up(w);
-  given.time = config.time;
+  given.time = config.time.evaluated_every(fdem_shared::usual_evaluation);
   given.gravity = config.gravity.value;
   given.in_situ = config.in_situ;
   given.plane_strain = config.plane == "strain";

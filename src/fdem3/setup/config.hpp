@@ -131,11 +131,7 @@ struct InSituConfig {
 
 /// A whole case.
 struct Config : CaseConfig {
-  /// The bound on the step walks all tetrahedra and their joints.
-  Config() {
-    method = "fdem3d";
-    time.evaluate_every = 20;
-  }
+  Config() { method = "fdem3d"; }
 
   OverTime<Vec3> gravity{};    ///<  [m/s2]
   double gravity_begin = 0.0;  ///< no key: where the time of its table begins  [s]

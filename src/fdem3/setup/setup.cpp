@@ -322,7 +322,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   World w(exec);
   const FillingThreads filling(exec.threads);
   Case& given = set_up(w);
-  given.time = config.time;
+  given.time = config.time.evaluated_every(fdem_shared::usual_evaluation);
   given.gravity = config.gravity.value;
   given.in_situ = config.in_situ;
   given.local_damping = config.local_damping;

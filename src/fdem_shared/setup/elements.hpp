@@ -20,6 +20,11 @@
 
 namespace breccia::fdem_shared {
 
+/// Steps from one evaluation of the critical step to the next, as usual. The bound walks all
+/// elements and their joints: in every step it would cost more than the forces. Elements that could
+/// meet until the next evaluation count as met (stable_parts.hpp).
+inline constexpr int usual_evaluation = 20;
+
 /// More inertia under the weight that bodies have: time.mass_scaling.
 template <class Config>
 Config with_inertia(Config config) {

@@ -64,11 +64,11 @@ struct Scene {
     copy_to(b, to);
     build_incidence({}, a, b, ids, incidence);
   }
-  void gather(Lanes lanes) {
+  void gather(Lanes lanes, bool evaluates = true) {
     run_packs(lanes,
               GatherForces{sums.view(), bars.view(), contacts.view(), bar_actions.view(),
                            contact_actions.view(), mass.view(), inertia.view(), fixed.view(),
-                           force.view(), torque.view(), critical.view()},
+                           force.view(), torque.view(), critical.view(), evaluates},
               0, count);
   }
 };
@@ -78,6 +78,23 @@ bool same_bits(const Buffer<T>& one, const Buffer<T>& other) {
   return one.size() == other.size() &&
          std::memcmp(one.data(), other.data(), static_cast<std::size_t>(one.size()) * sizeof(T)) ==
              0;
+}
+
+/// In a step that does not evaluate the critical step, links bring no stiffness.
+TEST(SameBits, of_forces_without_stiffness) {
+  Scene with;
+  with.gather(Lanes::one);
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight}) {
+    if (lanes > widest_lanes()) continue;
+    Scene without;
+    for (LinkSums& sums : without.sums.host()) sums.clear_stiffness();
+    const Buffer<double> before = without.critical;
+    without.gather(lanes, false);
+    EXPECT_TRUE(same_bits(without.force, with.force)) << static_cast<int>(lanes);
+    EXPECT_TRUE(same_bits(without.torque, with.torque)) << static_cast<int>(lanes);
+    EXPECT_TRUE(same_bits(without.critical, before)) << static_cast<int>(lanes);
+    EXPECT_TRUE(same_bits(without.sums, with.sums)) << static_cast<int>(lanes);
+  }
 }
 
 TEST(SameBits, of_totals_for_any_width_of_vector) {
