@@ -94,7 +94,7 @@ BR_HD inline void write_actions(const View<PairForceOf<Number>>& actions, Index 
 #endif
 }
 
-/// What a step that does not evaluate asks of an action: its stiffness stays as it is.
+/// Numbers of an action alone, in a step that does not evaluate: its stiffness stays as it is.
 template <class Number>
 BR_HD inline void write_numbers(const View<PairForceOf<Number>>& actions, Index at,
                                 const double (&numbers)[9]) {
@@ -351,7 +351,8 @@ BR_HD void write_push(const Actions& actions, Index at, const PairMotion<R>& mot
   write_numbers(actions, at, numbers);
 }
 
-/// Likewise with tangent stiffnesses (Durand 2012, 4.4; docs/theory.md, time step).
+/// Books them with tangent stiffnesses, in one that does (Durand 2012, 4.4; docs/theory.md, time
+/// step).
 template <class R, class Actions>
 BR_HD void write_pair_force(const Actions& actions, Index at, const PairMotion<R>& motion,
                             const Vec3Of<R>& f, const Vec3Of<R>& moment, const R& normal,
