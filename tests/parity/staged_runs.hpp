@@ -49,29 +49,30 @@ void expect_alike(const Scene& s) {
     });
 }
 
-/// Saved at three times; continued alone and on ranks.
+/// Saved at three times; continued alone from each, and on ranks from the second.
 template <class Scene>
 void expect_resumed(const Scene& s) {
   const std::uint64_t whole = end_of(s);
   const std::string path =
       std::filesystem::temp_directory_path() / ("staged_" + std::to_string(::getpid()) + ".br");
+  double end = 0.0;
+  for (const auto& stage : s.config.stages) end += stage.until;
+  const auto saved = make_method(s.config, s.model, {}, nullptr);
+  StageControl stages(*saved, s.config.probes, "", nullptr);
   for (const double share : {0.2, 0.45, 0.9}) {
-    double end = 0.0;
-    for (const auto& stage : s.config.stages) end += stage.until;
-    const auto before = make_method(s.config, s.model, {}, nullptr);
-    StageControl stages(*before, s.config.probes, "", nullptr);
-    while (before->time() < share * end) {
-      before->advance(stages.limited({share * end, 1'000'000}));
+    while (saved->time() < share * end) {
+      saved->advance(stages.limited({share * end, 1'000'000}));
       stages.look();
     }
     CheckpointWriter writer;
-    before->save(writer);
+    saved->save(writer);
     writer.write(path);
     const CheckpointReader reader(path);
     const auto after = make_method(s.config, s.model, {}, nullptr);
     after->load(&reader);
     run_to(*after, s.config, nullptr);
     EXPECT_EQ(after->state_hash(), whole) << share;
+    if (share != 0.45) continue;
     simulate_ranks(2, 5, [&](Communicator& ranks) {
       const auto on_ranks = make_method(s.config, s.model, {}, &ranks);
       on_ranks->load(ranks.rank() == 0 ? &reader : nullptr);
