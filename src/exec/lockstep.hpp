@@ -60,6 +60,20 @@ class LaneGroup {
     return x;
 #endif
   }
+#if !defined(__CUDA_ARCH__)
+  /// The record of lane `of`, which each lane leaves as it is until its next call. On a device each
+  /// number takes a call of its own.
+  template <class T>
+  T record_from(int of, const T& own) const {
+    const T* const place = &own;
+    static_assert(sizeof place == sizeof(double));
+    double sent = 0.0;
+    std::memcpy(&sent, &place, sizeof place);
+    const T* other = nullptr;
+    std::memcpy(&other, lockstep::exchange(sent) + first_ + of % width, sizeof other);
+    return *other;
+  }
+#endif
   /// Bit k: `flag` of lane k.
   BR_HD unsigned ballot(bool flag) const {
 #if defined(__CUDA_ARCH__)

@@ -170,6 +170,10 @@ struct CouplesWide {
       if (k == corner) force = of_shape[k];
   }
   BR_HD static FacePart part_from(const LaneGroup<width>& group, int s, const FacePart& mine) {
+    static_assert(sizeof(FacePart) == 35 * sizeof(double));  // each number is handed over below
+#if !defined(__CUDA_ARCH__)
+    return group.record_from(s, mine);
+#else
     FacePart part;
     const auto take = [&](double& to, double from) { to = group.from(s, from); };
     const auto take_vector = [&](Vec3& to, const Vec3& from) {
@@ -187,6 +191,7 @@ struct CouplesWide {
     take_vector(part.push, mine.push);
     take_vector(part.moment, mine.moment);
     return part;
+#endif
   }
 };
 
