@@ -164,23 +164,24 @@ Image draw_bodies(Canvas& canvas, const Frame& frame, const RenderOptions& optio
   const float relief = relief_of(frame, scene.camera.resolution);
   if (is_paired(frame) && options.show_spheres) place_spheres(canvas, frame, 1.0, scene, threads);
   draw_solids(canvas, frame, coloring, {joints && !options.xray, options.edges}, scene, threads);
+  const int fine = canvas.width / options.width;
+  if (!options.xray && fine > 1)
+    return shade_reduced(canvas, scene.looks, scene.clip, relief, fine, threads, ground);
   Image image = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
   if (!options.xray) return image;
   Canvas within(canvas.width, canvas.height);
   draw_joint_faces(within, frame, coloring, scene, threads);
   Image inside = shade(within, scene.looks, scene.clip, relief, threads, ground);
   lay_veil(inside, within, image, canvas);
-  return inside;
+  return fine > 1 ? reduced(inside, fine, threads) : inside;
 }
 
-/// Draws the items. @param fine  pixels of the canvas for one of the picture
+/// Draws the items.
 Image draw_items(Canvas& canvas, const Frame& frame, const RenderOptions& options,
                  const Coloring& coloring, Scene& scene, int threads, std::uint8_t ground) {
+  if (!frame.tetrahedra.empty())
+    return draw_bodies(canvas, frame, options, coloring, scene, threads, ground);
   const int fine = canvas.width / options.width;
-  if (!frame.tetrahedra.empty()) {
-    Image image = draw_bodies(canvas, frame, options, coloring, scene, threads, ground);
-    return fine > 1 ? reduced(image, fine, threads) : image;
-  }
   const bool links = options.show_links || coloring.of_lines || coloring.cracks;
   const bool spheres = options.show_spheres && !frame.radius.empty();
   const bool through = options.xray && spheres;
@@ -193,11 +194,13 @@ Image draw_items(Canvas& canvas, const Frame& frame, const RenderOptions& option
   if (through) return see_through(canvas, frame, coloring, scene, relief, threads, ground);
   if (links) draw_lines(canvas, frame, coloring, scene, threads);
   draw_triangles(canvas, frame, coloring.triangles, scene, threads);
-  Image image = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
-  if (fine > 1)
-    image = reduced(image, fine, threads);
-  else
+  Image image;
+  if (fine > 1) {
+    image = shade_reduced(canvas, scene.looks, scene.clip, relief, fine, threads, ground);
+  } else {
+    image = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
     smooth_outlines(image, canvas, scene.looks, threads);
+  }
   if (!coloring.bars.empty() && spheres) draw_bars(image, canvas, coloring, scene, relief, threads);
   return image;
 }

@@ -26,6 +26,11 @@ Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
             const std::optional<ScreenClip>& clip, float relief, int threads,
             std::uint8_t ground = 255);
 
+/// That of each block of `fine` times `fine` pixels its mean: a picture smaller than its canvas.
+Image shade_reduced(const Canvas& canvas, std::span<const ItemLook> looks,
+                    const std::optional<ScreenClip>& clip, float relief, int fine, int threads,
+                    std::uint8_t ground = 255);
+
 /// Softens the steps on the outlines of spheres: a pixel that an outline crosses takes part of the
 /// colour of either side, by the distance of its centre from the outline.
 void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks,
