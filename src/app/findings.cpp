@@ -81,7 +81,8 @@ int execute_and_tell(Run& run, const ResultFolder* folder, const CaseConfig& con
     leave_curves();
     throw;
   }
-  if (exit_code != 0)
+  const bool ended = exit_code == 0 || exit_code == CheckFailed("").exit_code();
+  if (!ended)
     leave_curves();
   else if (folder != nullptr)
     tell_and_report(folder->path(), config, quiet);

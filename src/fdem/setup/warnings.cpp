@@ -8,6 +8,7 @@
 #include "core/on_host.hpp"
 #include "fdem/observe.hpp"
 #include "fdem_shared/observe.hpp"
+#include "fdem_shared/setup/empty_probes.hpp"
 #include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem {
@@ -120,6 +121,7 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
 
 std::vector<std::string> doubts(const World& w, const Config& config) {
   std::vector<std::string> found;
+  fdem_shared::look_for_empty_probes(w, config, found);
   fdem_shared::look_for_unbalanced_weight(
       config, "xx_slope[0] + xy_slope[1] and xy_slope[0] + yy_slope[1]", found);
   look_for_slivers(w, found);

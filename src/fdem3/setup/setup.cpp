@@ -19,6 +19,7 @@
 #include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
+#include "fdem_shared/setup/empty_probes.hpp"
 #include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem3 {
@@ -358,6 +359,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
       "xx_slope[0] + xy_slope[1] + xz_slope[2], xy_slope[0] + yy_slope[1] + yz_slope[2] and "
       "xz_slope[0] + yz_slope[1] + zz_slope[2]",
       given.warnings);
+  fdem_shared::look_for_empty_probes(w, config, given.warnings);
   if (auto flat = flat_tetrahedron(model)) given.warnings.push_back(std::move(*flat));
   begin_ledger(w);
   return w;

@@ -9,6 +9,7 @@
 #include "prepare/checks/in_situ.hpp"
 #include "prepare/checks/outlines.hpp"
 #include "prepare/checks/round_borders.hpp"
+#include "prepare/checks/takes_place.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -17,21 +18,6 @@ std::string place_text(double x) {
   return x < 0.0 ? "-" + length_text(-x) : x > 0.0 ? length_text(x) : "0 m";
 }
 constexpr const char* axis_words[] = {"x", "y", "z"};
-
-/// Whether a region reaches a point of a body.
-template <class Region>
-bool reaches(const Region& region, const Vec3& x, const std::string& body,
-             const std::vector<Outline>& outlines, double slack) {
-  const bool on_part = std::any_of(outlines.begin(), outlines.end(), [&](const Outline& o) {
-    return o.in_another && o.name == region.on;
-  });
-  if (!region.on.empty() && region.on != body && !on_part) return false;
-  const Bounds b = region_bounds(region);
-  const double at[] = {x.x, x.y, x.z};
-  for (std::size_t k = 0; k < 3; ++k)
-    if (at[k] < b.low[k] - slack || at[k] > b.high[k] + slack) return false;
-  return true;
-}
 
 template <class Config>
 class Borders {
@@ -129,13 +115,13 @@ class Borders {
     for (const auto& s : config_.supports) {
       const bool holds = s.is_free() || s.servo.is_on() ||
                          std::count(s.fix.begin(), s.fix.end(), axis_words[axis]) > 0;
-      if (holds && reaches(s.region, x, body->name, outlines_, slack)) return;
+      if (holds && reaches(s.region, body->name, outlines_, x, slack)) return;
     }
     bool loaded = false, other = false;
     double pressure = 0.0;
     std::string name;
     for (const auto& load : config_.loads) {
-      if (!load.dug_by.empty() || !reaches(load.region, x, body->name, outlines_, slack)) continue;
+      if (!load.dug_by.empty() || !reaches(load.region, body->name, outlines_, x, slack)) continue;
       if (load.kind == "absorbing") {
         side.absorbs = true;
         continue;

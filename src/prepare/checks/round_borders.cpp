@@ -7,12 +7,12 @@
 #include <cmath>
 #include <map>
 
-#include "core/region.hpp"
 #include "exec/error.hpp"
 #include "fdem_shared/shape.hpp"
 #include "math/constants.hpp"
 #include "prepare/checks/in_situ.hpp"
 #include "prepare/checks/outlines.hpp"
+#include "prepare/checks/takes_place.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/shapes/surface.hpp"
@@ -177,37 +177,6 @@ Vec3 traction(const fdem3::InSituConfig& in_situ, const Piece& piece) {
   return in_situ.at(piece.at) * piece.normal;
 }
 
-/// Whether a region takes a place, to a slack; sides that a mesh names may be there.
-template <class Region>
-bool takes_place(const Region& region, const Vec3& x, double slack) {
-  if constexpr (requires { region.edges; }) {
-    if (!region.edges.empty()) return true;
-  } else {
-    if (!region.faces.empty()) return true;
-  }
-  const Vec3 low = fdem_shared::to_space(region.min), high = fdem_shared::to_space(region.max);
-  constexpr int axes = requires {
-    region.min.z;
-  }
-  ? 3 : 2;
-  const double wider = region.outside ? -slack : slack;
-  bool inside = true;
-  for (int k = 0; k < axes; ++k)
-    inside = inside && fdem_shared::part_of(x, k) >= fdem_shared::part_of(low, k) - wider &&
-             fdem_shared::part_of(x, k) <= fdem_shared::part_of(high, k) + wider;
-  if constexpr (requires { region.around; }) {
-    if (region.radius > 0.0)
-      inside = inside && in_round(region.center, region.radius + wider, region.around, x);
-    if (!region.polygon.empty())
-      inside = inside && in_polygon(region.polygon, seen_along(region.around, x));
-  } else {
-    if (region.radius > 0.0)
-      inside = inside && in_circle(region.center, region.radius + wider, {x.x, x.y});
-    if (!region.polygon.empty()) inside = inside && in_polygon(region.polygon, {x.x, x.y});
-  }
-  return inside != region.outside;
-}
-
 template <class Config>
 class RoundBorders {
  public:
@@ -265,14 +234,6 @@ class RoundBorders {
     return false;
   }
 
-  template <class Region>
-  bool reaches(const Region& region, const std::string& body, const Vec3& x, double slack) const {
-    const bool on_part = std::any_of(outlines_.begin(), outlines_.end(), [&](const Outline& o) {
-      return o.in_another && o.name == region.on;
-    });
-    return (region.on.empty() || region.on == body || on_part) && takes_place(region, x, slack);
-  }
-
   void look_at(const std::string& body, const Piece& piece, double largest, double slack,
                Found& found) const {
     found.all += piece.size;
@@ -280,7 +241,7 @@ class RoundBorders {
     const double stress = norm(left);
     if (stress <= 1e-3 * largest) return;
     for (const auto& s : config_.supports)
-      if (reaches(s.region, body, piece.at, slack))
+      if (reaches(s.region, body, outlines_, piece.at, slack))
         for (int axis = 0; axis < 3; ++axis)
           if (s.is_free() || s.servo.is_on() ||
               std::count(s.fix.begin(), s.fix.end(), std::string(1, "xyz"[axis])) > 0)
@@ -290,7 +251,7 @@ class RoundBorders {
     double pressure = 0.0;
     std::string name;
     for (const auto& load : config_.loads) {
-      if (!load.dug_by.empty() || !reaches(load.region, body, piece.at, slack)) continue;
+      if (!load.dug_by.empty() || !reaches(load.region, body, outlines_, piece.at, slack)) continue;
       if (load.kind == "absorbing") {
         found.absorbs = true;
         continue;

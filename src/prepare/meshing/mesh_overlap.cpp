@@ -21,9 +21,30 @@ Box box_of(const std::array<Vec2, 3>& c) {
           {std::max({c[0].x, c[1].x, c[2].x}), std::max({c[0].y, c[1].y, c[2].y})}};
 }
 
-bool share_a_vertex(const Triangle& a, const Triangle& b) {
-  return std::any_of(a.begin(), a.end(),
-                     [&](Index v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+/// Whether a direction lies between two others, which are less than half a turn apart.
+bool is_between(const Vec2& direction, const Vec2& first, const Vec2& last) {
+  constexpr double flat = 1e-9;
+  return cross(first, direction) > flat * norm(first) * norm(direction) &&
+         cross(direction, last) > flat * norm(direction) * norm(last);
+}
+
+/// Whether triangles, given counterclockwise, lie apart because they share a vertex and not the
+/// angle at it: as neighbours do, of which a mesh has many.
+bool meet_at_a_vertex(const std::vector<Vec2>& point, const Triangle& a, const Triangle& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (a[i] != b[j]) continue;
+      const Vec2 at = point[static_cast<std::size_t>(a[i])];
+      const auto side = [&](const Triangle& t, std::size_t k) {
+        return point[static_cast<std::size_t>(t[k % 3])] - at;
+      };
+      const Vec2 a1 = side(a, i + 1), a2 = side(a, i + 2), b1 = side(b, j + 1), b2 = side(b, j + 2);
+      const bool apart = !is_between(b1, a1, a2) && !is_between(b2, a1, a2) &&
+                         !is_between(a1, b1, b2) && !is_between(a2, b1, b2) &&
+                         !is_between(b1 + b2, a1, a2);
+      return apart;
+    }
+  return false;
 }
 
 }  // namespace
@@ -86,7 +107,8 @@ std::vector<Overlap> overlaps_of(const std::vector<Vec2>& point,
          ++j) {
       const auto a = static_cast<std::size_t>(entries[i].triangle),
                  b = static_cast<std::size_t>(entries[j].triangle);
-      if (!boxes[a].meets(boxes[b]) || share_a_vertex(triangles[a], triangles[b])) continue;
+      if (!boxes[a].meets(boxes[b]) || meet_at_a_vertex(point, triangles[a], triangles[b]))
+        continue;
       const double smaller =
           std::min(signed_area(point, triangles[a]), signed_area(point, triangles[b]));
       if (shared_area(corners_of(point, triangles[a]), corners_of(point, triangles[b])) >

@@ -38,11 +38,6 @@ TetBox box_of(const FourPoints& x) {
   return box;
 }
 
-bool share_a_corner(const Tetrahedron& a, const Tetrahedron& b) {
-  return std::any_of(a.begin(), a.end(),
-                     [&](Index v) { return std::find(b.begin(), b.end(), v) != b.end(); });
-}
-
 using Cell = std::array<double, 3>;  ///< whole numbers
 
 template <class Visit>
@@ -129,9 +124,7 @@ std::vector<TetOverlap> overlaps_of(const std::vector<Vec3>& point,
     for (std::size_t j = i + 1; j < entries.size() && entries[j].first == entries[i].first; ++j) {
       const auto a = static_cast<std::size_t>(entries[i].second),
                  b = static_cast<std::size_t>(entries[j].second);
-      if (!(outer[a] || outer[b]) || !boxes[a].meets(boxes[b]) ||
-          share_a_corner(tetrahedra[a], tetrahedra[b]))
-        continue;
+      if (!(outer[a] || outer[b]) || !boxes[a].meets(boxes[b])) continue;
       if (shared_depth(four_of(point, tetrahedra[a]), four_of(point, tetrahedra[b])) >
           least_depth * std::min(boxes[a].edge(), boxes[b].edge()))
         found.emplace_back(entries[i].second, entries[j].second);
