@@ -13,6 +13,7 @@
 #include "io/round_numbers.hpp"
 #include "math/constants.hpp"
 #include "math/principal.hpp"
+#include "report/first_breaks.hpp"
 #include "report/shot.hpp"
 
 namespace breccia::report {
@@ -215,10 +216,13 @@ class Findings {
 
   std::string unbroken() {
     const double fracture = record_.number("energy.fracture").value_or(0.0);
-    std::string text = fmt::format("Nothing broke: all {} are whole", count_of(all_, what_));
-    if (!(fracture > 0.0)) return text + " and none has softened.";
+    if (!(fracture > 0.0))
+      return fmt::format("Nothing broke: all {} are whole and none has softened.",
+                         count_of(all_, what_));
     const std::string spent = value_text(fracture, energy_unit());
-    if (!find_softened()) return text + fmt::format(", though {} went into softening.", spent);
+    if (!find_softened())
+      return fmt::format("Nothing broke to its end, though {} went into softening of some of {}.",
+                         spent, count_of(all_, what_));
     return fmt::format(
         "A crack has begun that parts nothing yet: of {}, none broke to its end, but {} went into "
         "softening, and those around {} have lost {} of what they bear, on the mean.",
@@ -336,15 +340,9 @@ class Findings {
       text = "It began at " + place_text(start, true);
     } else if (find_first_break()) {
       const Shot shot = read(break_frame_);
-      const std::vector<std::uint8_t> broken = broken_since_start(shot);
-      Vec3 sum{};
-      double count = 0.0;
-      for (std::size_t l = 0; l < broken.size(); ++l) {
-        if (broken[l] == 0) continue;
-        sum = sum + shot.middle(l);
-        count += 1.0;
-      }
-      text = "It began around " + place_text((1.0 / count) * sum, shot.plane) +
+      std::vector<std::uint8_t> broken = broken_since_start(shot);
+      leave_first(record_, shot, broken);
+      text = "It began around " + place_text(middle_of(shot, broken), shot.plane) +
              bodies_of(shot, broken);
     }
     const std::string mode = mode_text();

@@ -84,12 +84,16 @@ constexpr std::uintmax_t largest_table = 100'000'000;
 /// Bonds that have parted, by time. A cut before the start has the time 0 and is left out.
 std::vector<Break> breaks_in(const NumberTable& broken) {
   const Column *const time = broken.column("time"), *const kind = broken.column("kind");
+  const Column *const x = broken.column("x"), *const y = broken.column("y"),
+                      *const z = broken.column("z");
+  const bool placed = x != nullptr && y != nullptr && z != nullptr;
   std::vector<Break> breaks;
   for (std::size_t i = 0; time != nullptr && i < broken.rows(); ++i)
     if (time->values[i] > 0.0 && std::isfinite(time->values[i])) {
       const bool told = kind != nullptr && kind->values[i] > 0.0;
       breaks.push_back(
-          {time->values[i], told ? static_cast<std::size_t>(std::min(kind->values[i], 99.0)) : 0});
+          {time->values[i], told ? static_cast<std::size_t>(std::min(kind->values[i], 99.0)) : 0,
+           placed ? std::optional(Vec3{x->values[i], y->values[i], z->values[i]}) : std::nullopt});
     }
   std::stable_sort(breaks.begin(), breaks.end(),
                    [](const Break& a, const Break& b) { return a.time < b.time; });

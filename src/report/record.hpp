@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "math/vec.hpp"
 #include "report/scene.hpp"
 #include "report/table.hpp"
 
@@ -13,8 +14,9 @@ namespace breccia::report {
 
 /// A link or joint that broke.
 struct Break {
-  double time;       ///<  [s]
-  std::size_t kind;  ///< of links, as frames number them; of joints 0
+  double time;                            ///<  [s]
+  std::size_t kind;                       ///< of links, as frames number them; of joints 0
+  std::optional<Vec3> at = std::nullopt;  ///< middle of a link  [m]
 };
 
 struct Record {

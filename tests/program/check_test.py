@@ -161,7 +161,7 @@ center = [0.08, 0.0, 0.0]
 size = [0.02, 0.02, 0.2]
 """)
         self.assertEqual(code, 2)
-        self.assertIn("line 14, body.slab.cut[2].center: it takes nothing out of slab, 20 mm away", words)
+        self.assertIn("line 14, body.slab.cut[1].center: it takes nothing out of slab, 20 mm away", words)
 
 
 if __name__ == "__main__":

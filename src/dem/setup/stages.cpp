@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/by_stages.hpp"
 #include "core/named.hpp"
 #include "core/set_up.hpp"
 #include "core/unused_motion.hpp"
@@ -141,42 +142,44 @@ std::vector<std::string> stage_problems(const Config& config) {
         if (wall.name == change.name) add_change_problems(where, wall, change, problems);
     }
   }
-  const auto servo = [&](const std::string& where, const ServoConfig& s, const auto& velocity) {
+  const auto add_servo = [](const std::string& where, const ServoConfig& s, const auto& velocity,
+                            std::vector<std::string>& found) {
     if (!s.is_on()) return;
     if (velocity.is_table() || norm(velocity.value) > 0.0)
-      problems.push_back(where + ": it has a velocity and a servo, which decides that");
+      found.push_back(where + ": it has a velocity and a servo, which decides that");
     if ((s.pressure.is_table() || s.pressure.value != 0.0) && !(s.area > 0.0))
-      problems.push_back(where + ".servo.area: the pressure needs an area to act on");
+      found.push_back(where + ".servo.area: the pressure needs an area to act on");
     if (s.is_plate() && s.gain != ServoConfig{}.gain)
-      problems.push_back(where + ".servo.gain: a plate has none; with mass = inf it counts");
+      found.push_back(where + ".servo.gain: a plate has none; with mass = inf it counts");
   };
-  StageProgress progress;
-  for (std::size_t k = 0; k < std::max<std::size_t>(config.stages.size(), 1); ++k) {
-    progress.index = static_cast<std::int32_t>(k);
-    const Config now = config_at(config, progress);
-    const std::string stage = config.stages.empty() ? "" : "stage." + config.stages[k].name + ": ";
-    add_motion_problems(config, now, k, problems);
+  const auto problems_in = [&](const Config& now) {
+    std::vector<std::string> found;
     for (const WallConfig& wall : now.walls)
-      servo(stage + "wall." + wall.name, wall.servo, wall.velocity);
+      add_servo("wall." + wall.name, wall.servo, wall.velocity, found);
     for (const SupportConfig& s : now.supports) {
-      servo(stage + "support." + s.name, s.servo, s.velocity);
+      add_servo("support." + s.name, s.servo, s.velocity, found);
       if (s.absorbs() && (s.servo.is_on() || s.velocity.is_table() || norm(s.velocity.value) > 0.0))
-        problems.push_back(stage + "support." + s.name +
-                           ".absorb: dashpots move nothing; leave velocity and servo out");
+        found.push_back("support." + s.name +
+                        ".absorb: dashpots move nothing; leave velocity and servo out");
       if (s.pushes() && (!s.fix.empty() || s.absorbs() || s.servo.is_on() ||
                          s.velocity.is_table() || norm(s.velocity.value) > 0.0))
-        problems.push_back(stage + "support." + s.name +
-                           ".force acts on elements that are free: fix must be [], and velocity, "
-                           "servo and absorb left out");
+        found.push_back("support." + s.name +
+                        ".force acts on elements that are free: fix must be [], and velocity, "
+                        "servo and absorb left out");
       if (s.friction > 0.0 && !s.fix.empty() && (directions_of(s) != 1 || s.absorbs()))
-        problems.push_back(stage + "support." + s.name +
-                           ".friction: a platen with friction fixes one of x, y, z");
+        found.push_back("support." + s.name +
+                        ".friction: a platen with friction fixes one of x, y, z");
       if (s.servo.is_on() && std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end() &&
           std::find(s.fix.begin(), s.fix.end(), "all") == s.fix.end())
-        problems.push_back(stage + "support." + s.name + ".servo.axis = \"" + s.servo.axis +
-                           "\": it does not fix that direction");
+        found.push_back("support." + s.name + ".servo.axis = \"" + s.servo.axis +
+                        "\": it does not fix that direction");
     }
-  }
+    return found;
+  };
+  add_by_stages(
+      config, problems, [&](const StageProgress& progress) { return config_at(config, progress); },
+      problems_in,
+      [&](const Config& now, std::size_t k) { add_motion_problems(config, now, k, problems); });
   std::sort(problems.begin(), problems.end());
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
   return problems;

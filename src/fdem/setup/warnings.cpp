@@ -101,6 +101,11 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
   const Vec2 place = 0.5 * (ends[a % 3].position + ends[(a + 1) % 3].position);
   std::string names = material(a).name;
   if (material(b).name != names) names += " and " + material(b).name;
+  const JointBond& law = bonds[at(joints->law.data()[worst.at_longest])];
+  for (const JointConfig& own : config.joint_laws)
+    if (own.strength.tension == law.tension &&
+        config.joints.softening_factor * own.strength.energy_open == law.softening_open)
+      names = "joint." + own.name + ", " + names;
   std::string others;
   if (zones.size() > 1)
     others = "; " + std::to_string(zones.size()) + " laws of joints are like that";

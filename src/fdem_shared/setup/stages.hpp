@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/by_stages.hpp"
 #include "core/named.hpp"
 #include "core/stages.hpp"
 #include "core/unused_motion.hpp"
@@ -70,14 +71,12 @@ bool changes_strengths(const Config& config) {
 }
 
 /// Problems of the servos of a case as it is in a stage.
-/// @param stage  begins each sentence
 /// @param area   what a servo's pressure acts on: a length or an area
 template <class Config>
-void add_servo_problems(const Config& now, const std::string& stage, const char* area,
-                        std::vector<std::string>& problems) {
+void add_servo_problems(const Config& now, const char* area, std::vector<std::string>& problems) {
   for (const auto& s : now.supports) {
     if (!s.servo.is_on()) continue;
-    const std::string where = stage + "support." + s.name;
+    const std::string where = "support." + s.name;
     if (s.velocity.is_table() || norm(s.velocity.value) > 0.0)
       problems.push_back(where + ": it has a velocity and a servo, which decides that");
     if ((s.servo.pressure.is_table() || s.servo.pressure.value != 0.0) && !(s.servo.area > 0.0))
@@ -110,8 +109,7 @@ inline Vec3 largest_spin(const OverTime<Vec3>& spin) {
 /// Problems of the turns of supports of a case as it is in a stage: a turn moves corners across its
 /// axis, which the support must fix and no servo must lead.
 template <class Config>
-void add_turn_problems(const Config& now, const std::string& stage,
-                       std::vector<std::string>& problems) {
+void add_turn_problems(const Config& now, std::vector<std::string>& problems) {
   const std::vector<std::string> words{"x", "y", "z"};
   for (const auto& s : now.supports) {
     const Vec3 spin = largest_spin(s.spin);
@@ -122,23 +120,22 @@ void add_turn_problems(const Config& now, const std::string& stage,
       if (!(norm(across) > 0.0) || s.fix.empty()) continue;
       const bool fixed = std::find(s.fix.begin(), s.fix.end(), word) != s.fix.end();
       if (!fixed)
-        problems.push_back(stage + "support." + s.name + ".spin moves what it holds along " + word +
+        problems.push_back("support." + s.name + ".spin moves what it holds along " + word +
                            ", which it does not fix");
       if (s.servo.is_on() && s.servo.axis == word)
-        problems.push_back(stage + "support." + s.name +
-                           ".spin: its servo moves the axis aside, along " + word);
+        problems.push_back("support." + s.name + ".spin: its servo moves the axis aside, along " +
+                           word);
     }
   }
 }
 
 /// Problems of bodies that forces move, of a case as it is in a stage.
 template <class Config>
-void add_free_problems(const Config& now, const std::string& stage,
-                       const std::vector<std::string>& directions,
+void add_free_problems(const Config& now, const std::vector<std::string>& directions,
                        std::vector<std::string>& problems) {
   for (const auto& s : now.supports) {
     const auto add = [&](const std::string& what) {
-      problems.push_back(stage + "support." + s.name + what);
+      problems.push_back("support." + s.name + what);
     };
     const auto has = [](const std::vector<std::string>& list, const std::string& word) {
       return std::find(list.begin(), list.end(), word) != list.end();
@@ -249,17 +246,19 @@ std::vector<std::string> problems_of_stages(const Config& config,
       breccia::stage_problems({config.stages.begin(), config.stages.end()}, names_of(config.probes),
                               names_of(config.bodies));
   for (const auto& stage : config.stages) add_stage_problems(config, stage, directions, problems);
-  StageProgress progress;
-  for (std::size_t k = 0; k < std::max<std::size_t>(config.stages.size(), 1); ++k) {
-    progress.index = static_cast<std::int32_t>(k);
-    const std::string stage = config.stages.empty() ? "" : "stage." + config.stages[k].name + ": ";
-    const Config now = config_at(config, progress);
-    add_servo_problems(now, stage, area, problems);
-    add_turn_problems(now, stage, problems);
-    add_free_problems(now, stage, directions, problems);
-    add_begin_problems(config, now, k, problems);
-    add_motion_problems(config, now, k, problems);
-  }
+  add_by_stages(
+      config, problems, [&](const StageProgress& progress) { return config_at(config, progress); },
+      [&](const Config& now) {
+        std::vector<std::string> found;
+        add_servo_problems(now, area, found);
+        add_turn_problems(now, found);
+        add_free_problems(now, directions, found);
+        return found;
+      },
+      [&](const Config& now, std::size_t k) {
+        add_begin_problems(config, now, k, problems);
+        add_motion_problems(config, now, k, problems);
+      });
   return problems;
 }
 

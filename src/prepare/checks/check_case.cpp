@@ -214,6 +214,7 @@ class Check {
     if (p.on.empty() || prepare::item_named(config_.bodies, p.on) != nullptr ||
         prepare::item_named(config_.supports, p.on) != nullptr) {
       for (const std::string& problem : probe_problems(p, in_space)) add(problem);
+      check_bars(p);
       return;
     }
     if (prepare::item_named(config_.walls, p.on) != nullptr) return check_wall_probe(p);
@@ -225,6 +226,21 @@ class Check {
         "probe.{}.on = {:?} is neither a body ({}) nor a support ({}) nor a wall ({}){}", p.name,
         p.on, prepare::all_names(config_.bodies), prepare::all_names(config_.supports),
         prepare::all_names(config_.walls), meant_name(p.on, known)));
+  }
+
+  /// Only bodies of shape rebar, and files whose material is steel, have bars to read.
+  void check_bars(const ProbeConfig& p) {
+    if (p.quantity != "axial_force") return;
+    const auto has_bars = [&](const dem::BodyConfig& body) {
+      const dem::MaterialConfig* const of = prepare::item_named(config_.materials, body.material);
+      return body.shape == "rebar" || (of != nullptr && of->law == "steel");
+    };
+    const dem::BodyConfig* const body = prepare::item_named(config_.bodies, p.on);
+    if (body == nullptr ? std::any_of(config_.bodies.begin(), config_.bodies.end(), has_bars)
+                        : has_bars(*body))
+      return;
+    add(fmt::format("probe.{}.quantity = \"axial_force\" is of reinforcement bars, and {} has none",
+                    p.name, body == nullptr ? "this case" : "body " + p.on));
   }
 
   void check_wall_probe(const ProbeConfig& p) {

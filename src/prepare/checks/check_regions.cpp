@@ -136,7 +136,7 @@ void add_idle_cuts(const dem::BodyConfig& body, std::vector<std::string>& proble
         nearest_to({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, "", outline);
     if (nearest.body != nullptr)
       problems.push_back(fmt::format("body.{}.cut[{}].center: it takes nothing out of {}, {} away",
-                                     body.name, k + 1, body.name, length_text(nearest.away)));
+                                     body.name, k, body.name, length_text(nearest.away)));
   }
 }
 

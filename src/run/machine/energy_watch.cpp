@@ -59,17 +59,23 @@ void require_numbers(const EnergyBalance& energy) {
 
 bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double time) {
   require_numbers(energy);
-  const auto count = [&](double limit, std::int64_t& rows) {
-    rows = limit > 0.0 && judged(energy, step) > limit ? rows + 1 : 0;
-    return rows;
-  };
-  if (count(limits_.stop, rows_.above_stop) >= patience) refuse(energy, limits_.stop, step, time);
+  const double error = judged(energy, step);
+  if (!(limits_.stop > 0.0 && error > limits_.stop)) {
+    rows_.above_stop = 0;
+  } else if (rows_.above_stop == 0 || error <= faded * began_) {
+    rows_.above_stop = 1;
+    began_ = error;
+  } else {
+    ++rows_.above_stop;
+  }
+  if (rows_.above_stop >= patience) refuse(energy, limits_.stop, step, time);
   const double largest = largest_of(energy);
   if (largest >= 2.0 * rows_.largest && rows_.above_warn < patience) {
     rows_.largest = largest;
     rows_.above_warn = 0;
   }
-  return count(limits_.warn, rows_.above_warn) == patience;
+  rows_.above_warn = limits_.warn > 0.0 && error > limits_.warn ? rows_.above_warn + 1 : 0;
+  return rows_.above_warn == patience;
 }
 
 void KineticShare::look(const EnergyBalance& energy) {

@@ -15,12 +15,15 @@ namespace breccia {
 /// error fades. One that stays for `patience` rows, a fortieth of the usual 1000, or to the end of
 /// the case, does not. Rows that call for a warning are counted anew when the largest energy has
 /// doubled: what is missing of the energies at the start of a load is little of those that follow.
-/// The limit that ends a run counts all rows. Energies below 1e-14 J, a body at rest, are not
-/// judged; nor is less than the mean of what a step has moved, the largest energy over the number
-/// of steps: after n steps that is a share of 1/n, and of no weight beyond 1/stop and 1/warn steps.
+/// The limit that ends a run counts anew when the error has faded by a tenth: what the first touch
+/// of a servo's wall has missed stays, while energies grow beyond it. Energies below 1e-14 J, a
+/// body at rest, are not judged; nor is less than the mean of what a step has moved, the largest
+/// energy over the number of steps: after n steps that is a share of 1/n, and of no weight beyond
+/// 1/stop and 1/warn steps.
 class EnergyWatch {
  public:
   static constexpr std::int64_t patience = 25;  ///< rows
+  static constexpr double faded = 0.9;          ///< of the error with which rows were counted  [-]
 
   /// Rows in succession above a limit; part of the record's state.
   struct Rows {
@@ -29,7 +32,9 @@ class EnergyWatch {
   };
 
   explicit EnergyWatch(const EnergyConfig& limits) : limits_(limits) {}
-  EnergyWatch(const EnergyConfig& limits, const Rows& rows) : limits_(limits), rows_(rows) {}
+  /// @param began  as began() of the run before
+  EnergyWatch(const EnergyConfig& limits, const Rows& rows, double began)
+      : limits_(limits), rows_(rows), began_(began) {}
 
   /// Whether a row calls for a warning. @throws NumericsError if the run must end, or if an energy
   /// is too large to be summed
@@ -44,10 +49,13 @@ class EnergyWatch {
   static constexpr double excess = 0.01;  ///<  [-]
 
   const Rows& rows() const { return rows_; }
+  /// Error of the row with which the count of above_stop began.  [-]
+  double began() const { return began_; }
 
  private:
   EnergyConfig limits_;
   Rows rows_;
+  double began_ = 0.0;
   bool gave_ = false;
 };
 

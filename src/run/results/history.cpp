@@ -103,14 +103,18 @@ std::optional<double> History::probe_at(const std::string& path, std::size_t pro
   return std::nullopt;
 }
 
-void History::cut_to(const std::string& path, std::int64_t step) {
+std::int64_t History::cut_to(const std::string& path, std::int64_t step) {
   int line_number = 0;
+  std::int64_t last = -1;
   keep_lines(path, [&](std::string_view line) {
     if (++line_number <= 2) return true;
     std::int64_t row_step = 0;
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), row_step);
-    return error == std::errc{} && *end == ',' && row_step <= step;
+    const bool keeps = error == std::errc{} && *end == ',' && row_step <= step;
+    if (keeps) last = row_step;
+    return keeps;
   });
+  return last;
 }
 
 }  // namespace breccia

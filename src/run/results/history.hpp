@@ -34,7 +34,8 @@ class History {
 
   /// Rows of later steps than `step` go, of this file or another one that begins so: a run that
   /// goes on from there writes them anew.
-  static void cut_to(const std::string& path, std::int64_t step);
+  /// @returns the step of the last row that is left; -1: none
+  static std::int64_t cut_to(const std::string& path, std::int64_t step);
 
   /// Value of probe number `probe` at a time, linear between the rows before and after it;
   /// nothing: no rows are so early or so late.

@@ -76,6 +76,7 @@ void RecordState::save(CheckpointWriter& writer) const {
   if (first) writer.value("run.first_extent", *first);
   writer.value("run.height", height);
   writer.value("run.energy_watch", unbalanced);
+  writer.value("run.energy_watch_from", unbalanced_from);
   writer.value("run.moving", moving);
   std::vector<double> ranges;
   for (const ProbeRange& probe : probes)
@@ -94,6 +95,8 @@ void RecordState::load(const CheckpointReader& reader) {
   if (reader.has("run.height")) height = reader.value<std::int64_t>("run.height");
   if (reader.has("run.energy_watch"))
     unbalanced = reader.value<EnergyWatch::Rows>("run.energy_watch");
+  if (reader.has("run.energy_watch_from"))
+    unbalanced_from = reader.value<double>("run.energy_watch_from");
   if (reader.has("run.moving")) moving = reader.value<KineticShare>("run.moving");
   const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
   probes.resize(ranges.count / 3);
@@ -124,7 +127,7 @@ Recorder::Recorder(const CaseConfig& config, const std::vector<StageEnd>& stages
 
 void Recorder::resume(const RecordState& state, double time, std::int64_t step) {
   state_ = state;
-  watch_ = EnergyWatch(config_.energy, state.unbalanced);
+  watch_ = EnergyWatch(config_.energy, state.unbalanced, state.unbalanced_from);
   state_.probes.resize(config_.probes.size());
   for (std::size_t i = 0; i < config_.probes.size(); ++i)
     state_.probes[i].name = config_.probes[i].name;
@@ -138,7 +141,14 @@ void Recorder::open(const ResultFolder& folder, Log& log) {
   log_ = &log;
   pictures_ = folder.file("pictures");
   const std::string history = folder.file("history.csv");
-  if (resumed_from_) History::cut_to(history, state_.row_step);
+  if (resumed_from_) {
+    const std::int64_t last = History::cut_to(history, state_.row_step);
+    if (last < state_.row_step)
+      log.warn("history", *resumed_from_,
+               fmt::format("history.csv has lost its rows from step {} to step {}, which the "
+                           "checkpoint has seen: curves and sentences about this run lack them",
+                           last + 1, state_.row_step));
+  }
   history_.emplace(history, config_.probes, config_.method == "fdem2d", !stages_.empty());
   if (config_.output.step_times) {
     const std::string steps = folder.file("steps.csv");
@@ -202,6 +212,7 @@ void Recorder::record(Method& method, Background& background) {
                                "or a smaller time.safety may help",
                                100.0 * last_energy_->contact_relative));
       state_.unbalanced = watch_.rows();
+      state_.unbalanced_from = watch_.began();
       state_.moving.look(*last_energy_);
     });
     rows_.pass(time);

@@ -51,6 +51,7 @@ struct RecordState {
   std::int64_t height = 0;         ///< of the pictures; 0: not known yet  [pixels]
   std::vector<ProbeRange> probes;  ///< over the rows that the schedule asked for
   EnergyWatch::Rows unbalanced;    ///< likewise
+  double unbalanced_from = 0.0;    ///< EnergyWatch::began
   KineticShare moving;             ///< likewise
 
   void save(CheckpointWriter& writer) const;
