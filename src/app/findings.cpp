@@ -66,23 +66,27 @@ void tell_and_report(const std::string& folder, const CaseConfig& config, bool q
 }  // namespace
 
 int execute_and_tell(Run& run, const ResultFolder* folder, const CaseConfig& config, bool quiet) {
-  // Of a run that ends early the reason is the one thing to tell, whatever becomes of its curves.
-  const auto leave_curves = [&] {
+  // Of a run that fails or ends early the reason is the one thing to tell, whatever becomes of what
+  // it leaves.
+  const auto leave = [&](const auto& work) {
     try {
-      if (folder != nullptr) write_curves(folder->path(), config);
+      if (folder != nullptr) work();
     } catch (const std::exception&) {
       return;
     }
   };
+  const auto leave_curves = [&] { leave([&] { write_curves(folder->path(), config); }); };
   int exit_code = 0;
   try {
     exit_code = run.execute();
+  } catch (const CheckFailed&) {  // the run ended well; its failed check is the one error to tell
+    leave([&] { tell_and_report(folder->path(), config, quiet); });
+    throw;
   } catch (...) {
     leave_curves();
     throw;
   }
-  const bool ended = exit_code == 0 || exit_code == CheckFailed("").exit_code();
-  if (!ended)
+  if (exit_code != 0)
     leave_curves();
   else if (folder != nullptr)
     tell_and_report(folder->path(), config, quiet);

@@ -148,7 +148,7 @@ std::vector<ContactPair> contact_table(const Config& config) {
     }
   for (std::size_t k = 0; k < config.frictions.size(); ++k) {
     const FrictionConfig& f = config.frictions[k];
-    const std::string where = "friction[" + std::to_string(k + 1) + "].between";
+    const std::string where = "friction[" + std::to_string(k) + "].between";
     if (f.between.size() != 2) throw InputError(where + ": takes two materials");
     const auto a = static_cast<std::size_t>(material_index(config, f.between[0], where));
     const auto b = static_cast<std::size_t>(material_index(config, f.between[1], where));

@@ -42,9 +42,9 @@ std::uint32_t line_of(const toml::table& root, const std::vector<std::string>& p
     if (below == nullptr) break;
     if (const toml::array* list = below->as_array(); list && list->is_homogeneous<toml::table>()) {
       const std::string name = k + 1 < path.size() ? path[k + 1] : "";
-      const std::size_t number = path[k].find('[');  // cut[2]: the second one
+      const std::size_t number = path[k].find('[');  // cut[1]: the second one
       below = number != std::string::npos
-                  ? list->get(std::strtoul(path[k].c_str() + number + 1, nullptr, 10) - 1)
+                  ? list->get(std::strtoul(path[k].c_str() + number + 1, nullptr, 10))
                   : item_of(*list, name);
       if (below != nullptr && number == std::string::npos)
         ++k;

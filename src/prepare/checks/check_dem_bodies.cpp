@@ -171,15 +171,15 @@ class DemBodyChecks {
         ".pack.periodic: a body with joins is cut from a cell that is periodic along x, y and z");
     for (std::size_t k = 0; k < b.joins.size(); ++k) {
       const dem::CutConfig& join = b.joins[k];
-      require(join.shape != "stl", ".join[{}]: draw the union in the STL file of the body", k + 1);
+      require(join.shape != "stl", ".join[{}]: draw the union in the STL file of the body", k);
       require(join.shape != "box" || (join.size.x > 0.0 && join.size.y > 0.0 && join.size.z > 0.0),
-              ".join[{}].size needs three lengths above 0", k + 1);
+              ".join[{}].size needs three lengths above 0", k);
     }
   }
   void check_solids(const std::vector<dem::CutConfig>& solids, const char* key) {
     for (std::size_t k = 0; k < solids.size(); ++k) {
       const dem::CutConfig& cut = solids[k];
-      const std::string path = fmt::format(".{}[{}]", key, k + 1);
+      const std::string path = fmt::format(".{}[{}]", key, k);
       check_turn(cut.axis, cut.across, path);
       const int flat = (cut.size.x == 0.0) + (cut.size.y == 0.0) + (cut.size.z == 0.0);
       require(cut.shape != "box" || flat <= 1, "{}.size needs two lengths above 0, or three", path);

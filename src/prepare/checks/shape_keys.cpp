@@ -47,7 +47,7 @@ void look_at_solids(const std::string& path, const std::vector<dem::CutConfig>& 
                     std::vector<std::string>& problems) {
   for (std::size_t k = 0; k < solids.size(); ++k) {
     const dem::CutConfig& s = solids[k];
-    look(fmt::format("{}[{}].", path, k + 1), s.shape,
+    look(fmt::format("{}[{}].", path, k), s.shape,
          {{"size", norm(s.size) > 0.0, {"box"}},
           {"radius", s.radius > 0.0, {"sphere", "cylinder"}},
           {"length", s.length > 0.0, {"cylinder"}},

@@ -45,5 +45,34 @@ TEST(FdemWarnings, tell_where_edges_are_too_long_for_the_process_zone) {
   }
 }
 
+TEST(FdemWarnings, name_probes_whose_box_holds_nothing) {
+  Scene scene;
+  scene.material().joints = "none";
+  scene.body("left", prepare::crossed_rectangle({{0.0, 0.0}, {0.01, 0.01}}, 5e-3));
+  scene.body("right", prepare::crossed_rectangle({{0.03, 0.0}, {0.01, 0.01}}, 5e-3));
+  const auto said = [&](const char* on, const char* quantity, double low, double high) {
+    ProbeConfig probe;
+    probe.name = "gauge";
+    probe.on = on;
+    probe.quantity = quantity;
+    probe.min = {low, -1.0, -1.0};
+    probe.max = {high, 1.0, 1.0};
+    scene.config.probes = {probe};
+    const std::vector<std::string> all = scene.world().given->warnings;
+    return all.empty() ? "" : all[0];
+  };
+  EXPECT_EQ(said("", "displacement_x", 0.0049, 0.0051), "");
+  EXPECT_EQ(said("", "displacement_x", 0.0051, 0.0055),
+            "probe.gauge: its box holds no corner of the mesh at the start, and it reads 0; the "
+            "nearest is at (0.005, -0.005) m");
+  EXPECT_EQ(said("left", "velocity_x", 0.0045, 0.0255), "");
+  EXPECT_NE(said("right", "velocity_x", 0.0045, 0.0055).find("nearest is at (0.025, -0.005) m"),
+            std::string::npos);
+  EXPECT_EQ(said("", "stress_xx", -0.005, -0.003), "");
+  EXPECT_NE(said("", "stress_xx", -0.005, -0.0045).find("no middle of an element"),
+            std::string::npos);
+  EXPECT_EQ(said("", "opening", 0.0101, 0.0105), "") << "no crack reads 0";
+}
+
 }  // namespace warnings_test
 }  // namespace breccia::fdem

@@ -57,7 +57,7 @@ TEST(CheckFdem3, RefusesWhatDoesNotFit) {
       {[](Config& c) {
          c.frictions.push_back({{"rock", "ice"}, 0.1});
        },
-       "friction[1].between = \"ice\" is no material; there are: rock"},
+       "friction[0].between = \"ice\" is no material; there are: rock"},
       {[](Config& c) {
          c.joint_laws[0].between = {"rock", "ice"};
        },

@@ -65,6 +65,27 @@ TEST(CheckInSitu, tells_which_side_nothing_bears) {
             std::string::npos);
 }
 
+/// Regions take what lies outside of their box, or in a circle, where they say so.
+TEST(CheckInSitu, asks_regions_by_their_shape) {
+  fdem::Config config = plate();
+  auto& foot = config.supports[2].region;
+  foot.min = {-2.0, -0.49};
+  foot.max = {2.0, 2.0};
+  foot.outside = true;
+  EXPECT_EQ(doubtful_in_situ(config, "."), Notes{free_top});
+  foot.min = {-2.0, -2.0};
+  foot.max = {2.0, 0.49};
+  const Notes lower = doubtful_in_situ(config, ".");
+  ASSERT_EQ(lower.size(), 1U);
+  EXPECT_NE(lower[0].find("on the side y = -500 mm of plate"), std::string::npos) << lower[0];
+  foot = {};
+  foot.center = {0.0, -0.5};
+  foot.radius = 0.125;  // a quarter of the side
+  const Notes round = doubtful_in_situ(config, ".");
+  ASSERT_EQ(round.size(), 2U);
+  EXPECT_NE(round[0].find("on 75 % of the side y = -500 mm"), std::string::npos) << round[0];
+}
+
 TEST(CheckInSitu, is_content_with_the_same_pressure_alone) {
   fdem::Config config = plate();
   auto* load = &add_load(config, "pressure");

@@ -147,11 +147,11 @@ TEST(Joins, AreRefusedWhereTheyMakeNoBody) {
       EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << text << "\n" << e.what();
     }
   };
-  expect("body.angle.join[1].size needs three lengths above 0",
+  expect("body.angle.join[0].size needs three lengths above 0",
          [](Config& c) { c.bodies[0].joins[0].size.y = 0.0; });
-  expect("body.angle.join[1].radius must be above 0",
+  expect("body.angle.join[0].radius must be above 0",
          [](Config& c) { c.bodies[0].joins[0].shape = "sphere"; });
-  expect("body.angle.join[1]: draw the union in the STL file",
+  expect("body.angle.join[0]: draw the union in the STL file",
          [](Config& c) { c.bodies[0].joins[0].shape = "stl"; });
   expect("body.angle.join: boxes, spheres and cylinders are joined to", [](Config& c) {
     c.bodies[0].shape = "stl";

@@ -370,9 +370,9 @@ TEST(Shapes, wrong_ones_are_told_by_key) {
   EXPECT_EQ(problems([](dem::BodyConfig& b) { b.shape = "stl"; }),
             "body.part.file is missing: an STL file\n");
   EXPECT_EQ(problems([](dem::BodyConfig& b) { b.cuts.emplace_back(); }),
-            "body.part.cut[1].size needs two lengths above 0, or three\n");
+            "body.part.cut[0].size needs two lengths above 0, or three\n");
   EXPECT_EQ(problems([](dem::BodyConfig& b) { b.cuts.push_back(ball(0.0)); }),
-            "body.part.cut[1].radius must be above 0\n");
+            "body.part.cut[0].radius must be above 0\n");
   dem::Config config = one_body(body);
   config.bodies[0].cuts.push_back(ball(1.0));
   EXPECT_NE(message_of([&] { build_model(config, ""); }).find("body.part: nothing is left"),

@@ -82,6 +82,29 @@ TEST(TetOverlap, BodiesInEachOtherAreRefused) {
   EXPECT_TRUE(mentions(refusal(case_of({box, pin})), "body.block and body.pin overlap"));
 }
 
+/// Two that share a corner, an edge or a face lie beside each other or in each other.
+TEST(TetOverlap, TwoThatShareACornerMayOverlap) {
+  const ScratchFolder scratch;
+  const auto said = [&](const char* other) {
+    replace_file(scratch / "two.inp",
+                 std::string("*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
+                             "5, 0.6, 0.1, 0.1\n6, 0.1, 0.6, 0.1\n7, 0.1, 0.1, 0.6\n"
+                             "8, -1, 0, 0\n9, 0, -1, 0\n10, 0, 0, -1\n"
+                             "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n2, ") +
+                     other + "\n");
+    BodyConfig body;
+    body.name = "both";
+    body.material = "rock";
+    body.shape = "mesh";
+    body.file = "two.inp";
+    return refusal(case_of({body}), scratch.path());
+  };
+  for (const char* beside : {"1, 8, 10, 9", "1, 2, 9, 10", "1, 3, 2, 10"})
+    EXPECT_EQ(said(beside).find("overlap"), std::string::npos) << said(beside);
+  for (const char* within : {"1, 5, 6, 7", "1, 2, 6, 7", "1, 2, 3, 7"})
+    EXPECT_TRUE(mentions(said(within), "overlap")) << within;
+}
+
 TEST(TetOverlap, VerticesAtOnePlaceAreRefusedWithinABody) {
   const ScratchFolder scratch;
   replace_file(scratch / "two.inp",

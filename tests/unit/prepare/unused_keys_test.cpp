@@ -154,7 +154,7 @@ TEST(UnusedKeys, refuses_keys_of_bodies_of_another_shape) {
   EXPECT_TRUE(says(with(tetrahedra, "height = 1.0"),
                    "body.b.height is of cylinders and parts; shape is box"));
   EXPECT_TRUE(says(with(spheres, "[[body.cut]]\nsize = [0.1, 0.1, 0.1]\nradius = 0.1"),
-                   "body.b.cut[1].radius is of spheres and cylinders; shape is box"));
+                   "body.b.cut[0].radius is of spheres and cylinders; shape is box"));
 }
 
 TEST(UnusedKeys, a_step_that_never_ends_names_its_key) {

@@ -7,6 +7,7 @@
 
 #include "io/whole_file.hpp"
 #include "report/breakage.hpp"
+#include "report/first_breaks.hpp"
 #include "report/survey.hpp"
 #include "unit/io/solid_scene.hpp"
 #include "unit/report/result_scene.hpp"
@@ -69,6 +70,26 @@ TEST(Findings, ListsOfBrokenLinksTellWhenMoreCloselyThanFrames) {
       << text;
 }
 
+/// A frame shows two places broken; the list tells which one was first.
+TEST(Findings, TheFirstBreakIsWhereTheListSaysAndNotBetweenTwo) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  Shot shot;
+  for (int k = 0; k < 8; ++k) shot.corner.push_back({0.02 * k, 0.0, 0.0});
+  for (int k = 0; k < 7; ++k) shot.ends.insert(shot.ends.end(), {k, k + 1});
+  const std::vector<std::uint8_t> both{0, 1, 0, 0, 0, 1, 1};
+  std::vector<std::uint8_t> broken = both;
+  test::write_text(folder.path() + "/broken_links.csv", "a,b,kind,time\n-,-,-,s\n5,6,0,0.001\n");
+  leave_first(read_record(folder.path()), shot, broken);
+  EXPECT_EQ(broken, both) << "no places";
+  EXPECT_NEAR(middle_of(shot, broken).x, 0.09, 1e-12);
+  test::write_text(folder.path() + "/broken_links.csv",
+                   "a,b,x,y,z,kind,time\n-,-,m,m,m,-,s\n1,2,0.03,0,0,0,0.002\n"
+                   "5,6,0.1102,0,0,0,0.001\n6,7,0.13,0,0,0,0.002\n");
+  leave_first(read_record(folder.path()), shot, broken);
+  EXPECT_EQ(broken, (std::vector<std::uint8_t>{0, 0, 0, 0, 0, 1, 0}));
+}
+
 /// Rows that are farther apart than softening takes: nothing breaks before it softens.
 TEST(Findings, NothingBreaksBeforeItSoftens) {
   const ScratchFolder folder;
@@ -128,7 +149,8 @@ TEST(Findings, LinksThatHaveSoftenedMuchAreACrack) {
     series.finish();
     const std::string text = joined(findings_of(read_record(folder.path())));
     EXPECT_EQ(
-        text.find("Nothing broke to its end, though 1.5 J went into softening of some of 7 links.") ==
+        text.find(
+            "Nothing broke to its end, though 1.5 J went into softening of some of 7 links.") ==
             std::string::npos,
         lost > 0.5F)
         << text;
@@ -159,7 +181,9 @@ TEST(Findings, WhatCutsPartedBeforeTheStartDidNotBreak) {
   const ScratchFolder folder;
   test::write_chain(folder.path(), 8, 0);
   const std::string text = joined(findings_of(read_record(folder.path())));
-  EXPECT_NE(text.find("Nothing broke: all 6 links are whole"), std::string::npos) << text;
+  EXPECT_NE(text.find("Nothing broke to its end, though 1.5 J went into softening of some of 6"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("Besides, 1 link was parted by cuts before the start."), std::string::npos)
       << text;
   EXPECT_EQ(text.find("It began"), std::string::npos) << text;

@@ -76,6 +76,24 @@ TEST(EnergyWatch, growth_does_not_put_off_the_end_of_a_run) {
   EXPECT_THROW(watch.look(growing(work, 0.02), 5024, 0.0), NumericsError);
 }
 
+/// What was missed once is less and less of energies that grow, at any start of theirs; what goes
+/// on to be missed is not, nor is what grows with them.
+TEST(EnergyWatch, an_error_that_fades_slowly_ends_no_run) {
+  for (const double missed : {1.0, 0.0}) {
+    EnergyWatch watch(EnergyConfig{});
+    const auto run = [&] {
+      for (int row = 25; row < 1000; ++row) {
+        const double work = 1e-3 * row * row;
+        watch.look(growing(work, 0.3 * (missed > 0.0 ? 0.625 / work : 1.0)), 500 * row, 0.0);
+      }
+    };
+    if (missed > 0.0)
+      EXPECT_NO_THROW(run());
+    else
+      EXPECT_THROW(run(), NumericsError);
+  }
+}
+
 TEST(EnergyWatch, a_warning_put_off_is_given_at_the_end) {
   EnergyWatch watch(EnergyConfig{});
   double work = 1.0;

@@ -140,7 +140,7 @@ coefficient = 0.3
        {"support.held.on = \"floor\" is not a body; there are: plate",
         "load.push.on = \"top\" is not a body; there are: plate",
         "probe.y.on = \"plat\" is neither a body (plate) nor a support (held); did you mean plate?",
-        "line 22, friction[1].between = \"rok\" is no material; there are: rock; did you mean "
+        "line 22, friction[0].between = \"rok\" is no material; there are: rock; did you mean "
         "rock?",
         "4 problems in "})
     EXPECT_NE(output().find(part), std::string::npos) << output();
