@@ -29,7 +29,7 @@ TEST_F(Program, TellsAtItsEndWhatTheRunShows) {
                                       "[[check]]\nname = \"wrong\"\nvalue = "
                                       "\"model.elements\"\nexpected = 3\n");
   ASSERT_EQ(run("run " + path("held.toml") + " -o " + path("failed")), 9);
-  EXPECT_EQ(output().find("shows"), std::string::npos) << output();
+  EXPECT_NE(output().find("shows   Nothing can break here"), std::string::npos) << output();
 }
 
 TEST_F(Program, ACaseMayAskForItsReport) {
