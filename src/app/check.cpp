@@ -53,6 +53,12 @@ std::string about_so_many(double count, std::string items) {
   return about(count) + ' ' + items;
 }
 
+/// "1 element", "4,612 triangles"
+std::string so_many_of(double count, std::string items) {
+  if (count == 1.0 && items.ends_with('s')) items.pop_back();
+  return count_text(count) + ' ' + items;
+}
+
 /// "18 ns", "1.1 us"
 std::string short_time(double seconds) {
   const bool nanoseconds = seconds < 0.995e-6;
@@ -120,7 +126,8 @@ struct CheckCommand {
           if (model || (expected && is_soon_built(*expected) && scripts_of(read).empty()))
             built = method_to_look_at(read);
           if (expected && built != nullptr)
-            expected = forecast_of(config, read, {built->time_step(), built->step_rule()});
+            expected = by_counts(
+                *built, forecast_of(config, read, {built->time_step(), built->step_rule()}));
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                      counted(bodies_of(config), "body", "bodies"),
                      counted(materials_of(config), "material", "materials"),
@@ -162,6 +169,24 @@ struct CheckCommand {
       if (read.file.empty()) throw;
       throw InputError(with_lines(error.what(), read.file));
     }
+  }
+
+  /// The forecast with the counts of a model, which specimens foretold.
+  static Forecast by_counts(Method& built, Forecast f) {
+    double items = 0.0, bonds = 0.0;
+    for (const Fact& fact : built.facts()) {
+      if (fact.path == "model.elements" || fact.path == "model.triangles" ||
+          fact.path == "model.tetrahedra")
+        items += fact.value;
+      if (fact.path == "model.links" || fact.path == "model.joints") bonds += fact.value;
+    }
+    if (!(items > 0.0 && f.items > 0.0)) return f;
+    const double share = items / f.items;
+    for (double* of : {&f.here_s, &f.gpu_s, &f.output_s, &f.memory, &f.disk}) *of *= share;
+    f.items = items;
+    f.bonds = bonds;
+    f.counted = true;
+    return f;
   }
 
   static bool is_soon_built(const Forecast& f) {
@@ -256,8 +281,7 @@ struct CheckCommand {
 
   /// A bound of its steps by what it does not know.
   static const char* bound_of(const Forecast& f) {
-    if (f.may_end_early && f.cut_by_lines) return "";
-    return f.may_end_early ? "at most " : f.cut_by_lines ? "at least " : "";
+    return f.cut_by_lines && !f.may_end_early ? "at least " : "";
   }
   static void tell_steps(const Forecast& f) {
     fmt::print("  step    {}{}, ruled by\n          {}\n",
@@ -270,9 +294,11 @@ struct CheckCommand {
           "          often a fifth of it and less where lines cut small elements:\n"
           "          check --model tells\n");
     fmt::print("  steps   {}{}, {}\n", bound_of(f), about(f.steps),
-               f.cut_by_lines    ? "more by as much as its step is shorter"
-               : f.may_end_early ? "since its stages may end it early"
-                                 : "more as bodies meet and break");
+               f.cut_by_lines ? "more by as much as its step is shorter"
+               : f.may_end_early
+                   ? "fewer if its stages end it early,\n          more as bodies meet "
+                     "and break"
+                   : "more as bodies meet and break");
   }
 
   static void tell_forecast(const Forecast& f) {
@@ -280,8 +306,11 @@ struct CheckCommand {
       fmt::print("  size    known when bodies are meshed or filled: check --model\n");
       return;
     }
-    fmt::print("  size    {}", about_so_many(f.items, f.item_name));
-    if (f.bonds > 0.0) fmt::print(", {}", about_so_many(f.bonds, f.bond_name));
+    const auto so_many = [&](double count, const char* name) {
+      return f.counted ? so_many_of(count, name) : about_so_many(count, name);
+    };
+    fmt::print("  size    {}", so_many(f.items, f.item_name));
+    if (f.bonds > 0.0) fmt::print(", {}", so_many(f.bonds, f.bond_name));
     fmt::print("\n");
     tell_steps(f);
     const double all = f.setup_s + f.here_s + f.output_s;

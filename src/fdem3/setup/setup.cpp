@@ -15,11 +15,11 @@
 #include "fdem3/setup/regions.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
+#include "fdem_shared/setup/empty_probes.hpp"
 #include "fdem_shared/setup/heavier.hpp"
 #include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
-#include "fdem_shared/setup/empty_probes.hpp"
 #include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem3 {

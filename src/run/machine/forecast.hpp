@@ -24,6 +24,7 @@ struct Forecast {
   double here_s = 0.0;         ///< wall time of the steps on all processors of this machine  [s]
   double output_s = 0.0;       ///< rows, frames and pictures, besides  [s]
   double setup_s = 0.0;        ///< packing, meshing, tests for fracture energies, besides  [s]
+  bool counted = false;        ///< items and bonds are those of a model
   bool of_model = false;       ///< the step is that of a model, not of specimens
   bool cut_by_lines = false;   ///< lines cut elements that ask for shorter steps than specimens do
   bool may_end_early = false;  ///< its stages end at rest or when a probe says so
