@@ -118,7 +118,7 @@ struct CheckCommand {
     std::unique_ptr<Method> built;
     std::visit(
         [&](const auto& config) {
-          const MemoryPlan plan = memory_plan(config);
+          const MemoryPlan plan = memory_plan(config, read.folder);
           refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
           std::optional<Forecast> expected;  // may refuse the case
           if (!read.model) expected = forecast_of(config, read);

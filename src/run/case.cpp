@@ -377,7 +377,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
         Model built;
         const Model* model = nullptr;
         collective_try(ranks, [&] {  // before any of them takes some
-          const MemoryPlan plan = memory_plan(config);
+          const MemoryPlan plan = memory_plan(config, read.model ? "" : read.folder);
           refuse_without_memory(plan, exec.space == Space::cuda ? plan.host_bytes : plan.run_bytes,
                                 ranks_on_this_machine(ranks));
         });
@@ -431,7 +431,7 @@ RunPlan plan_of(const Case& read) {
 std::string save_model_of(const Case& read, CheckpointWriter& writer, const Exec& how) {
   return std::visit(
       [&](const auto& config) {
-        const MemoryPlan plan = memory_plan(config);
+        const MemoryPlan plan = memory_plan(config, read.model ? "" : read.folder);
         refuse_without_memory(plan, plan.build_bytes, 1);
         ModelOf<std::remove_cvref_t<decltype(config)>> built;
         const auto* const model =

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -15,7 +16,9 @@
 #include "exec/error.hpp"
 #include "io/round_numbers.hpp"
 #include "math/constants.hpp"
+#include "prepare/meshing/body_mesh.hpp"
 #include "prepare/packing/body_packing.hpp"
+
 namespace breccia {
 namespace {
 
@@ -73,6 +76,8 @@ double left_of_limit(const std::string& root) {
   return static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
+constexpr double equilateral = 0.433;  ///< area of a triangle over the square of its edge  [-]
+
 /// Of one body of triangles; 0 where its mesh alone tells.
 double triangles_of(const fdem::BodyConfig& body) {
   if (body.shape == "hexagons") return 6.0 * body.hexagons.count;
@@ -80,9 +85,25 @@ double triangles_of(const fdem::BodyConfig& body) {
   const double area =
       rectangle ? body.size.x * body.size.y
                 : pi * (body.radius * body.radius - body.inner_radius * body.inner_radius);
-  const double each = 0.433 * body.mesh_size * body.mesh_size;  // equilateral
+  const double each = equilateral * body.mesh_size * body.mesh_size;
   const bool known = rectangle || body.shape == "disc" || body.shape == "ring";
   return known && area > 0.0 && each > 0.0 ? area / each : 0.0;
+}
+
+/// Of a body whose file is its outline; 0 of others, and where the file cannot be read.
+double triangles_in_outline(const fdem::BodyConfig& body, const std::string& folder) {
+  if (body.shape != "outline" || folder.empty() || !(body.mesh_size > 0.0)) return 0.0;
+  try {
+    const std::vector<Vec2> corners = prepare::read_outline(folder + "/" + body.file);
+    double twice = 0.0;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      twice += cross(corners[k], corners[(k + 1) % corners.size()]);
+    double area = 0.5 * std::abs(twice);
+    for (const fdem::HoleConfig& hole : body.holes) area -= pi * hole.radius * hole.radius;
+    return std::max(0.0, area) / (equilateral * body.mesh_size * body.mesh_size);
+  } catch (const Error&) {
+    return 0.0;
+  }
 }
 
 }  // namespace
@@ -101,7 +122,7 @@ double tetrahedra_of(const fdem3::BodyConfig& body) {
 // Measured peaks: 50,000 and 200,000 packed elements with 6 links each, 64,000 and 257,000
 // triangles with 1.5 joints each, per item the same for both sizes to 3 %; 511,104 tetrahedra
 // with 2, and 100 million on an H200.
-MemoryPlan memory_plan(const dem::Config& config) {
+MemoryPlan memory_plan(const dem::Config& config, const std::string&) {
   constexpr double build = 640.0, linked = 2400.0, loose = 1000.0;  // bytes of an element
   MemoryPlan plan{.items = 0.0, .kind = "elements"};
   for (const dem::BodyConfig& body : config.bodies) {
@@ -120,18 +141,19 @@ MemoryPlan memory_plan(const dem::Config& config) {
   return plan;
 }
 
-MemoryPlan memory_plan(const fdem::Config& config) {
+MemoryPlan memory_plan(const fdem::Config& config, const std::string& folder) {
   constexpr double build = 270.0, run = 1700.0;  // bytes of a triangle
   constexpr double most = 2e8;  // more are refused with the body's name, whatever the memory
   MemoryPlan plan{.items = 0.0, .kind = "triangles"};
   for (const fdem::BodyConfig& body : config.bodies)
-    if (const double count = triangles_of(body); count < most) plan.items += count;
+    if (const double count = triangles_of(body); count < most)
+      plan.items += count + triangles_in_outline(body, folder);
   plan.build_bytes = build * plan.items;
   plan.run_bytes = plan.host_bytes = run * plan.items;
   return plan;
 }
 
-MemoryPlan memory_plan(const fdem3::Config& config) {
+MemoryPlan memory_plan(const fdem3::Config& config, const std::string&) {
   // Bytes of a tetrahedron with two joints: of a mesh of cubes, of one by gmsh with that program
   // beside it, of a run, and of one that writes frames; likewise on the host of a GPU, and of one
   // that writes checkpoints there.
@@ -152,7 +174,7 @@ MemoryPlan memory_plan(const fdem3::Config& config) {
   return plan;
 }
 
-MemoryPlan memory_plan(const coupled::Config& config) {
+MemoryPlan memory_plan(const coupled::Config& config, const std::string&) {
   const MemoryPlan a = memory_plan(static_cast<const dem::Config&>(config.spheres)),
                    b = memory_plan(static_cast<const fdem3::Config&>(config.tetrahedra));
   return {a.items + b.items, "spheres and tetrahedra", a.build_bytes + b.build_bytes,

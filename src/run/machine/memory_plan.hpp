@@ -11,7 +11,8 @@
 
 namespace breccia {
 
-/// Memory that building or running a case takes at least. Bodies from files are not counted.
+/// Memory that building or running a case takes at least. Bodies from files are not counted, but
+/// those whose file is their outline.
 struct MemoryPlan {
   double items = 0.0;     ///< elements, triangles or tetrahedra
   const char* kind = "";  ///< that word
@@ -19,10 +20,11 @@ struct MemoryPlan {
   double run_bytes = 0.0;
   double host_bytes = 0.0;  ///< of a run whose world a GPU holds, on the host
 };
-MemoryPlan memory_plan(const dem::Config& config);
-MemoryPlan memory_plan(const fdem::Config& config);
-MemoryPlan memory_plan(const fdem3::Config& config);
-MemoryPlan memory_plan(const coupled::Config& config);
+/// @param folder  where the files that the case names are; empty: none is opened
+MemoryPlan memory_plan(const dem::Config& config, const std::string& folder = "");
+MemoryPlan memory_plan(const fdem::Config& config, const std::string& folder = "");
+MemoryPlan memory_plan(const fdem3::Config& config, const std::string& folder = "");
+MemoryPlan memory_plan(const coupled::Config& config, const std::string& folder = "");
 
 /// Tetrahedra of one body; 0 where its file alone tells.
 double tetrahedra_of(const fdem3::BodyConfig& body);

@@ -70,6 +70,25 @@ TEST(MemoryPlan, items_follow_from_counts_and_areas) {
   EXPECT_NEAR(memory_plan(fdem).items, 50'312.0, 0.1 * 50'312.0);  // of gmsh
 }
 
+/// Of an outline whose corners a file lists, in millimetres taken for metres, say.
+TEST(MemoryPlan, items_of_an_outline_follow_from_its_file) {
+  const ScratchFolder scratch;
+  replace_file(scratch / "wedge.csv", "0,0\n200,0\n200,100\n");
+  fdem::Config config;
+  config.bodies.resize(1);
+  fdem::BodyConfig& body = config.bodies[0];
+  body.shape = "outline";
+  body.file = "wedge.csv";
+  body.mesh_size = 0.01;
+  EXPECT_EQ(memory_plan(config).items, 0.0);
+  EXPECT_EQ(memory_plan(config, scratch.path() + "/nowhere").items, 0.0);
+  EXPECT_NEAR(memory_plan(config, scratch.path()).items, 1e4 / 0.433e-4, 1e-6 * 1e4 / 0.433e-4);
+  body.holes.resize(1);
+  body.holes[0].radius = 20.0;
+  EXPECT_NEAR(memory_plan(config, scratch.path()).items, (1e4 - 400.0 * 3.14159265) / 0.433e-4,
+              1e-6 * 1e4 / 0.433e-4);
+}
+
 TEST(MemoryPlan, frames_and_checkpoints_of_tetrahedra_count_where_they_are_written) {
   fdem3::Config config;
   config.bodies.resize(1);
